@@ -2,7 +2,7 @@
 # ARGS is handed on: make run ARGS="render --material gold --output gold.png"
 
 .DEFAULT_GOAL := help
-.PHONY: help run install uninstall check lint test test-thorough test-times docs bench pictures mutants fuzz
+.PHONY: help run install uninstall check lint test test-thorough test-times docs bench pictures mutants fuzz attack
 
 help: ## Print this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-14s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
@@ -44,6 +44,10 @@ fuzz: ## Damaged files of all formats through the program for a while (MINUTES=1
 	@scripts/setup run
 	cargo build --release
 	scripts/fuzz --minutes $(or $(MINUTES),10) $(ARGS)
+
+attack: ## Random stacks of layers against energy, integrals, continuity and strategies (MINUTES=10 SEED=1)
+	cargo build --release
+	scripts/attack --minutes $(or $(MINUTES),10) --seed $(or $(SEED),1)
 
 test-thorough: lint ## All that there is, for hours: what is random, long or needs other programs, with debug assertions and on other drivers
 	@scripts/setup thorough

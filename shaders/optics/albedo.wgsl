@@ -1,4 +1,5 @@
 // The share of light that a lobe reflects of each view. Twin of src/optics/albedo.rs.
+#import "optics/lobe/lobe"
 #import "optics/thin_film"
 #import "scene/layout"
 
@@ -19,6 +20,15 @@ fn albedo_lookup(albedo_table: u32, place: f32) -> vec3f {
         sum += table_numbers(albedo_table, u32(below.x) + node).xyz * select(1.0 - beyond, beyond, node == 1u);
     }
     return sum;
+}
+
+fn azimuth_place(anisotropy: f32, frame: Frame, wo: vec3f) -> f32 {
+    let stretch = stretch_from_anisotropy(anisotropy);
+    let widths = vec2f(stretch * stretch, 1.0 / (stretch * stretch));
+    let along = vec2f(dot(frame.tangent, wo), dot(frame.bitangent, wo));
+    let width = sqrt(dot(along * along, widths) / max(dot(along, along), 1e-30));
+    let ends = sqrt(vec2f(min(widths.x, widths.y), max(widths.x, widths.y)));
+    return (width - ends.x) / max(ends.y - ends.x, 1e-6);
 }
 
 fn albedo_place(cosine: f32, eta: f32) -> f32 {
@@ -54,7 +64,8 @@ fn rough_albedo_lookup(albedo_table: u32, place: f32, roughness: f32) -> vec4f {
     return sum;
 }
 
-fn rough_albedo(terms: FresnelTerms, integrals: vec4f) -> vec3f {
+// `film` is what the film changes of the dielectric, untinted; its last number is 1 where that is known.
+fn rough_albedo(terms: FresnelTerms, integrals: vec4f, film: vec4f) -> vec3f {
     if !has_parts(terms) {
         return terms.weight * terms.tint * integrals.xyz;
     }
@@ -69,9 +80,13 @@ fn rough_albedo(terms: FresnelTerms, integrals: vec4f) -> vec3f {
     dielectric *= terms.weight;
     metal *= terms.metal_tint;
     if shows_film(terms) {
-        // No table has every thickness: the lobe counts as its mean facet.
+        // No table has every thickness or metal: the lobe counts as its mean facet.
         let facet = mean_facet(integrals.y, integrals.z);
-        dielectric = max(dielectric + film_change_of_dielectric(terms, facet.x) * facet.y, vec3f());
+        var change = film.xyz * min(terms.tint, vec3f(1.0)) * terms.weight;
+        if film.w == 0.0 {
+            change = film_change_of_dielectric(terms, facet.x) * facet.y;
+        }
+        dielectric = max(dielectric + change, vec3f());
         metal = max(metal + film_change_of_metal(terms, facet.x) * facet.y, vec3f());
     }
     return mix(dielectric, metal, terms.metalness);

@@ -14,8 +14,17 @@ struct FresnelTerms {
     ior: f32,
     eta: vec3f,
     k: vec3f,
+    coat: f32,
     has_film: bool,
     film: FilmTerms,
+}
+
+fn untinted(terms: FresnelTerms) -> FresnelTerms {
+    var without = terms;
+    if terms.model == FRESNEL_DIELECTRIC {
+        without.tint = vec3f(1.0);
+    }
+    return without;
 }
 
 fn of_dielectric(terms: FresnelTerms) -> FresnelTerms {
@@ -36,13 +45,14 @@ fn fresnel(terms: FresnelTerms, cosine: f32) -> vec3f {
         let parts = fresnel_parts(terms, cosine);
         return mix(parts.dielectric, parts.metal, terms.metalness);
     }
+    let within = cosine_in_coat(terms, cosine);
     var channels = vec3f(
-        fresnel_conductor(cosine, terms.eta.x, terms.k.x),
-        fresnel_conductor(cosine, terms.eta.y, terms.k.y),
-        fresnel_conductor(cosine, terms.eta.z, terms.k.z),
+        fresnel_conductor(within, terms.eta.x, terms.k.x),
+        fresnel_conductor(within, terms.eta.y, terms.k.y),
+        fresnel_conductor(within, terms.eta.z, terms.k.z),
     );
     if shows_film(terms) {
-        channels = film_on_conductor(terms, cosine, channels);
+        channels = film_on_conductor(terms, within, channels);
     }
     return terms.weight * terms.tint * channels;
 }
@@ -117,21 +127,9 @@ fn fresnel_dielectric(cosine: f32, ior: f32) -> f32 {
 }
 
 fn fresnel_left(terms: FresnelTerms, cosine: f32, behind: f32) -> vec3f {
-    var left = vec3f();
-    if terms.model == FRESNEL_SCHLICK {
-        let c = saturate(cosine);
-        // 1 - (1 - c)^5.
-        let beside_grazing = c * (5.0 - c * (10.0 - c * (10.0 - c * (5.0 - c))));
-        left = (1.0 - terms.tint * fresnel_f0(terms.ior)) * beside_grazing;
-    } else if terms.model == FRESNEL_DIELECTRIC {
-        left = 1.0 - terms.tint + terms.tint * fresnel_transmitted(cosine, behind, terms.ior);
-    } else {
-        var full = terms;
-        full.weight = 1.0;
-        left = 1.0 - fresnel(full, cosine);
-    }
-    if shows_film(terms) && has_parts(terms) {
-        left += min(terms.tint, vec3f(1.0)) * film_passed(terms, cosine, terms.ior * behind);
+    var left = vec3f(fresnel_transmitted(cosine, behind, terms.ior));
+    if shows_film(terms) {
+        left += film_passed(terms, cosine, terms.ior * behind);
     }
     return max(1.0 - terms.weight + left * terms.weight, vec3f());
 }

@@ -1,4 +1,5 @@
 // The material as the integrator sees it. Twin of src/optics/material.rs.
+#import "optics/albedo"
 #import "optics/fresnel"
 #import "optics/lobe/registry"
 
@@ -44,7 +45,13 @@ fn ior_under_coat(material: Material, weight: f32) -> f32 {
 }
 
 fn has_coated_table(material: Material) -> bool {
-    return has_flag(material, COATS_BASE) && material.coat_texture != NO_TEXTURE;
+    return material.fresnel != FRESNEL_CONDUCTOR && has_flag(material, COATS_BASE) && material.coat_texture != NO_TEXTURE;
+}
+
+fn has_film_table(material: Material) -> bool {
+    let has_index = material.fresnel == FRESNEL_SCHLICK || material.fresnel == FRESNEL_DIELECTRIC;
+    let is_varied = material.film_texture != NO_TEXTURE || material.film_thickness_texture != NO_TEXTURE;
+    return material.has_film == 1u && holds_integrals(material) && has_index && !is_varied && !has_coated_table(material);
 }
 
 // GGX's roughness under a coat of this weight.
@@ -59,19 +66,45 @@ fn material_fresnel_terms(material: Material, is_inside: bool) -> FresnelTerms {
     let tint = select(material.specular_color, vec3f(1.0), is_bare);
     let weight = select(material.specular_weight, 1.0, is_bare);
     let of_dielectric = select(weight, 1.0, has_flag(material, WEIGHS_INDEX));
+    let coat = select(ior_of_coat(material), 1.0, is_bare);
     return FresnelTerms(
         planned(material.fresnel, PLAN_FRESNEL), material.base_color, material.metalness, material.edge_tint, tint,
-        select(weight * tint, vec3f(1.0), has_flag(material, SPARES_METAL)), of_dielectric, reflecting_ior_ahead(material, is_inside), material.eta, material.k,
-        material.has_film == 1u, material_film_terms(material, is_bare),
+        select(weight * tint, vec3f(1.0), has_flag(material, SPARES_METAL)), of_dielectric, reflecting_ior_ahead(material, is_inside),
+        material.eta / coat, material.k / coat, coat, material.has_film == 1u, material_film_terms(material, is_bare, coat),
     );
 }
 
-fn material_film_terms(material: Material, is_within: bool) -> FilmTerms {
+fn material_film_terms(material: Material, is_within: bool, coat: f32) -> FilmTerms {
     if !PLAN_THIN_FILM {
         return FilmTerms();
     }
-    let before = select(material.ior / reflecting_ior_ahead(material, false), material.ior, is_within);
-    return FilmTerms(material.film_weight, material.film_ior / before, material.film_path * before);
+    let before = select(coat, material.ior, is_within);
+    let behind = select(material.ior, 1.0, is_within) / before;
+    return FilmTerms(material.film_weight, material.film_ior / before, behind, material.film_path * before);
+}
+
+// The index before the specular interface.
+fn ior_of_coat(material: Material) -> f32 {
+    if !PLAN_COAT || !has_flag(material, COATS_BASE) {
+        return 1.0;
+    }
+    return 1.0 + (material.coat_ior - 1.0) * material.coat_weight;
+}
+
+fn holds_integrals(material: Material) -> bool {
+    return PLAN_ROUGH_TABLES && (material.has_rough_tables & HOLDS_INTEGRALS) != 0u;
+}
+
+// Whether the material's tables extend over roughness or azimuth.
+fn has_rows(material: Material) -> bool {
+    return (PLAN_ROUGH_TABLES || PLAN_ANISOTROPY) && material.has_rough_tables != 0u;
+}
+
+fn table_row(material: Material, surface: Surface) -> f32 {
+    if PLAN_ANISOTROPY && (material.has_rough_tables & OVER_AZIMUTH) != 0u {
+        return azimuth_place(material.anisotropy, surface.frame, surface.wo);
+    }
+    return material.roughness;
 }
 
 fn material_has_holes(material: Material) -> bool {
@@ -110,5 +143,6 @@ fn material_has_specular(material: Material) -> bool {
     }
     let may_be_metal = material.metalness > 0.0 || material.metalness_texture != NO_TEXTURE;
     let is_spared = may_be_metal && has_flag(material, SPARES_METAL);
-    return material.specular_weight > 0.0 || is_spared || material_transmits(material);
+    let is_film = PLAN_THIN_FILM && material.has_film == 1u && has_flag(material, WEIGHS_INDEX);
+    return material.specular_weight > 0.0 || is_spared || material_transmits(material) || is_film;
 }

@@ -55,8 +55,8 @@ fn compensated(
 
 fn kept_energies(material: Material, surface: Surface, shape: LobeShape, channel: u32) -> vec3f {
     let place = safe_sqrt(dot(surface.frame.normal, surface.wo));
-    if PLAN_ROUGH_TABLES && material.has_rough_tables == 1u {
-        return rough_albedo_lookup(shape.table + channel * ROUGH_ALBEDO_LENGTH, place, material.roughness).xyz;
+    if has_rows(material) {
+        return rough_albedo_lookup(shape.table + channel * ROUGH_ALBEDO_LENGTH, place, table_row(material, surface)).xyz;
     }
     return albedo_lookup(shape.table + channel * 4u * ALBEDO_NODES, place);
 }

@@ -6,6 +6,7 @@
 struct FilmTerms {
     weight: f32,
     ior: f32,
+    behind: f32,
     path: vec3f,
 }
 
@@ -13,20 +14,28 @@ fn film_change_of_dielectric(terms: FresnelTerms, cosine: f32) -> vec3f {
     if !(terms.metalness < 1.0) {
         return vec3f();
     }
-    let height = safe_sqrt(refracted_square(max(cosine, LEAST_FILM_COSINE), terms.ior));
-    return -(min(terms.tint, vec3f(1.0)) * film_passed(terms, cosine, height)) * terms.weight;
+    return -(min(terms.tint, vec3f(1.0)) * film_passed(terms, cosine, -1.0)) * terms.weight;
 }
 
 fn film_change_of_metal(terms: FresnelTerms, cosine: f32) -> vec3f {
     if !(terms.metalness > 0.0) {
         return vec3f();
     }
-    return film_on_metal(terms, max(cosine, LEAST_FILM_COSINE)) * terms.metal_tint;
+    return film_on_metal(terms, max(cosine_in_coat(terms, cosine), LEAST_FILM_COSINE)) * terms.metal_tint;
 }
 
+fn cosine_in_coat(terms: FresnelTerms, cosine: f32) -> f32 {
+    let in_coat = min(safe_sqrt(refracted_square(cosine, terms.coat)) / terms.coat, 1.0);
+    return select(cosine, in_coat, terms.coat != 1.0);
+}
+
+// `height` is negative where it is not known.
 fn film_passed(terms: FresnelTerms, from_normal: f32, height: f32) -> vec3f {
-    let cosine = max(from_normal, LEAST_FILM_COSINE);
-    let behind = vec4f(height, 0.0, height / (terms.ior * terms.ior), 0.0);
+    let cosine = max(cosine_in_coat(terms, from_normal), LEAST_FILM_COSINE);
+    let index = terms.film.behind;
+    let under_coat = safe_sqrt(refracted_square(cosine, index));
+    let beyond = select(height, under_coat, height < 0.0 || terms.coat != 1.0);
+    let behind = vec4f(beyond, 0.0, beyond / (index * index), 0.0);
     let bare = entered_bare(cosine, behind);
     return (entered(terms.film, cosine, mat3x4f(behind, behind, behind)) - vec3f(bare)) * terms.film.weight;
 }

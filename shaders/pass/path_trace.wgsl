@@ -212,6 +212,10 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
             }
             if !is_shadow_ray {
                 hit = intersection.hit;
+                // More surfaces to pass than are looked at.
+                if hit.triangle == NO_HIT && intersection.transmittance == 0.0 {
+                    path.cut += luminance(throughput);
+                }
             }
             // The environment is looked up only where its light arrives: after an unoccluded shadow ray towards it, or after
             // a miss. A blurred background is seen in a direction of its own.
@@ -290,8 +294,12 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
         }
         let layers = material_layers(material, point.surface);
         // Guides for the denoiser. Later vertices overwrite them until one is not specular; depth is always the first hit's.
+        let is_last = bounce >= globals.bounces;
+        var albedo = vec3f();
+        if records_guides || is_last {
+            albedo = throughput * material_albedo(material, point.surface, layers);
+        }
         if records_guides {
-            let albedo = throughput * material_albedo(material, point.surface, layers);
             path.guides.albedo = saturate(albedo);
             path.guides.normal = material_normal(material, point.surface, layers);
             if bounce == 0u {
@@ -304,11 +312,9 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
             let contribution = throughput * emitted_light(point, material, hit.t, lobe_density, was_mirror);
             add_light(&path, contribution, bounce, material.flags >> LIGHT_GROUP_SHIFT);
         }
-        // The bounce limit. In glass it loses energy visibly, so the loss is reported.
-        if bounce >= globals.bounces {
-            if PLAN_TRANSMISSION {
-                path.cut = luminance(throughput);
-            }
+        // The bounce limit. What the surface would have scattered on is reported.
+        if is_last {
+            path.cut += luminance(albedo);
             break;
         }
         // Next-event estimation, first half: sample a direction towards the environment or an emitter. A mirror of the catcher
@@ -444,7 +450,5 @@ fn path_trace(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation
     statistics[index].luminance_squared += sums.luminance_squared;
     statistics[index].kept_dropped += sums.kept_dropped;
     statistics[index].rays_clamped += sums.rays_clamped;
-    if PLAN_TRANSMISSION {
-        statistics[index].cut += sums.cut;
-    }
+    statistics[index].cut += sums.cut;
 }

@@ -54,10 +54,10 @@ fn answer_fresnel(q: u32, a: u32) {
     }
     if questions[q] > 1u {
         let white = vec3f(1.0);
-        let film = FilmTerms(asked(q + 4u), asked(q + 5u), vec3f(asked(q + 6u)));
+        let film = FilmTerms(asked(q + 4u), asked(q + 5u), asked(q + 2u), vec3f(asked(q + 6u)));
         let terms = FresnelTerms(
             select(FRESNEL_CONDUCTOR, FRESNEL_DIELECTRIC, questions[q] == 2u), white, 0.0, white, white, white, 1.0,
-            asked(q + 2u), vec3f(asked(q + 2u)), vec3f(asked(q + 3u)), true, film,
+            asked(q + 2u), vec3f(asked(q + 2u)), vec3f(asked(q + 3u)), 1.0, true, film,
         );
         share = fresnel(terms, asked(q + 1u)).x;
     }

@@ -6,7 +6,7 @@
 // First dimension of the opacity tests, one pair per bounce.
 const OPACITY_DIMENSION = 8192u;
 // Transparent hits per ray at most. Beyond them a path's ray counts as a miss, and a shadow ray as blocked.
-const PASSES_MAX = 256u;
+const PASSES_MAX = 4096u;
 
 // Closest hit of a path's ray (t from the ray's origin), and transmittance of a shadow ray in [0, 1].
 struct Intersection {

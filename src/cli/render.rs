@@ -152,7 +152,8 @@ fn render(mut session: Session, document: &Document, begun: Instant, targets: &R
     };
     write_pictures(&targets.outputs, rendered, document)?;
     // Words come after the image: who does not read them must not hold it up.
-    message!("{}", summary(&progress));
+    let cut = session.film()?.cut_share();
+    message!("{}{}", summary(&progress), beyond_bounces(cut, document));
     report_written(&targets.outputs);
     if let Some(destination) = &targets.report {
         let mut report = json_report(&mut session, document, setup_seconds, progress, targets.aovs)?;
@@ -165,7 +166,7 @@ fn render(mut session: Session, document: &Document, begun: Instant, targets: &R
     }
     let dropped = session.film()?.dropped();
     if dropped > 0 {
-        message!("{dropped} samples were left out because they were not finite");
+        message!("{dropped} samples were left out: not finite, negative, or above 1e18");
     }
     ended_by.map_or(Ok(()), |signal| Err(signal.into()))
 }
@@ -324,6 +325,19 @@ fn summary(progress: &Progress) -> String {
     format!("{samples}: error {error:.2} % ({low:.2} to {high:.2} %){denoised}{why}")
 }
 
+/// The share of light that the error does not know of: what the last bounce would have scattered on.
+fn beyond_bounces(cut: f64, document: &Document) -> String {
+    const LEAST_TOLD: f64 = 5e-4;
+    if cut < LEAST_TOLD {
+        return String::new();
+    }
+    format!(
+        ", and up to {:.1} % beyond {} bounces",
+        100.0 * cut,
+        document.render.bounces
+    )
+}
+
 /// The report of `--report`.
 fn json_report(
     session: &mut Session,
@@ -351,6 +365,7 @@ fn json_report(
         "height": film.height,
         "samples_per_pixel": progress.samples_per_pixel,
         "mean_samples_per_pixel": progress.mean_samples,
+        "mean_luminance": film.luminance().iter().sum::<f64>() / film.pixel_count() as f64,
         "noise": progress.noise.map(|noise| noise.relative),
         "noise_low": progress.noise.map(|noise| noise.low),
         "noise_high": progress.noise.map(|noise| noise.high),

@@ -10,8 +10,8 @@ use crate::optics::layer::coat::{coat_shape, inner_reflection};
 use crate::optics::layer::fuzz::FUZZ_ROUGHNESS_MIN;
 use crate::optics::lobe::{Lobe, Width, is_mirror};
 use crate::optics::material::{
-    COAT_ABSORBS, COAT_IS_GGX, COATS_BASE, COMPENSATES, HAS_BOX, MATCHED_NODES, Material, NO_TEXTURE, SPARES_METAL,
-    VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY, WEIGHS_INDEX, coat_blur,
+    COAT_ABSORBS, COAT_IS_GGX, COATS_BASE, COMPENSATES, HAS_BOX, HOLDS_INTEGRALS, MATCHED_NODES, Material, NO_TEXTURE,
+    OVER_AZIMUTH, SPARES_METAL, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY, WEIGHS_INDEX, coat_blur,
 };
 use crate::optics::scattering::scattering_table;
 use crate::optics::table::{append_table, table_lookup};
@@ -154,7 +154,11 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
         put_coat(settings, slot, &mut material);
     }
     if material.has_coated_table() || material.has_varied_blur() {
-        material.has_rough_tables = 1;
+        material.has_rough_tables = HOLDS_INTEGRALS;
+    }
+    let is_of_one_roughness = !material.has_texture(&[On::Roughness]) && !material.has_varied_blur();
+    if material.anisotropy != 0.0 && settings.lobe.is_anisotropic() && is_of_one_roughness {
+        material.has_rough_tables |= OVER_AZIMUTH;
     }
     // Schlick's reflectance head-on may be tinted up to 1; the others are 1 at grazing angles already.
     let is_schlick = material.fresnel == Fresnel::Schlick as u32;
@@ -278,6 +282,7 @@ fn compile_one(settings: &MaterialSettings, textures: SlotTextures, tables: &mut
             let [bare, coated] = [0.0, 1.0].map(|weight| {
                 let reflecting_ior = material.ior_under_coat(weight);
                 let under = Material {
+                    coat_weight: weight,
                     reflecting_ior,
                     ..material
                 };
@@ -286,11 +291,11 @@ fn compile_one(settings: &MaterialSettings, textures: SlotTextures, tables: &mut
             material.albedo_table = append_table(tables, &bare);
             append_table(tables, &coated);
         } else {
-            material.albedo_table = append_table(tables, &remembered_albedo(&material, &curve_table, false));
+            material.albedo_table = append_albedo(tables, &material, &curve_table, false);
         }
     }
     if anywhere.transmits() {
-        material.inner_albedo_table = append_table(tables, &remembered_albedo(&material, &curve_table, true));
+        material.inner_albedo_table = append_albedo(tables, &material, &curve_table, true);
     }
     let varies = material.has_texture(&[On::Roughness]) || material.has_varied_blur();
     if varies && settings.lobe.traits().width == Width::Roughness {
@@ -302,6 +307,15 @@ fn compile_one(settings: &MaterialSettings, textures: SlotTextures, tables: &mut
         material.coat_table = append_table(tables, &remembered_albedo(&coat_alone(&material), &[], false));
     }
     material
+}
+
+/// Appends the albedo table of a side, then that of its film where it has one. Returns its start.
+fn append_albedo(tables: &mut Vec<f32>, material: &Material<f32>, curve_table: &[f32], is_inside: bool) -> u32 {
+    let start = append_table(tables, &remembered_albedo(material, curve_table, is_inside));
+    if material.has_film_table() {
+        append_table(tables, &remembered(film_key(material, curve_table, is_inside)));
+    }
+    start
 }
 
 /// A material whose specular lobe is the coat of another one.
@@ -320,7 +334,10 @@ fn coat_alone(material: &Material<f32>) -> Material<f32> {
         horizon: shape.horizon as u32,
         fresnel: Fresnel::Dielectric as u32,
         transmission_weight: 0.0,
-        has_rough_tables: u32::from(material.has_texture(&[On::CoatRoughness])),
+        has_rough_tables: match shape.anisotropy == 0.0 || material.has_texture(&[On::CoatRoughness]) {
+            true => u32::from(material.has_texture(&[On::CoatRoughness])),
+            false => OVER_AZIMUTH,
+        },
         has_film: 0,
         ..*material
     }
@@ -335,6 +352,8 @@ enum Holds {
     InnerAlbedo,
     /// Energies that single scattering keeps.
     Energies,
+    /// Changes of the albedo by a thin film, for views from outside or within.
+    Film { is_inside: bool },
 }
 
 /// What a table of a lobe depends on.
@@ -363,12 +382,17 @@ fn remembered(key: TableKey) -> Arc<[f32]> {
         return table;
     }
     let of = key.material.cast::<f64>();
-    let is_rough = of.has_rough_tables == 1;
-    let samples = if is_rough { ROUGH_ALBEDO_SAMPLES } else { ALBEDO_SAMPLES };
+    let is_rough = of.holds_integrals();
+    let samples = if of.has_rough_tables == 0 {
+        ALBEDO_SAMPLES
+    } else {
+        ROUGH_ALBEDO_SAMPLES
+    };
     let is_inside = key.holds == Holds::InnerAlbedo;
     let table: Arc<[f32]> = match key.holds {
         Holds::Energies => scattering_table(&of, ENERGY_SAMPLES * samples).into(),
-        _ if is_rough => rough_albedo_table(&of, &key.curve_table, samples, is_inside).into(),
+        Holds::Film { is_inside } => rough_albedo_table(&of, &key.curve_table, samples, is_inside, true).into(),
+        _ if is_rough => rough_albedo_table(&of, &key.curve_table, samples, is_inside, false).into(),
         _ => albedo_table(&of, &key.curve_table, samples, is_inside).into(),
     };
     let mut memory = memory();
@@ -377,6 +401,22 @@ fn remembered(key: TableKey) -> Arc<[f32]> {
     }
     memory.push((key, table.clone()));
     table
+}
+
+/// The key of what a film changes.
+fn film_key(material: &Material<f32>, curve_table: &[f32], is_inside: bool) -> TableKey {
+    let key = albedo_key(material, curve_table, is_inside);
+    TableKey {
+        material: Material {
+            has_film: 1,
+            film_weight: material.film_weight,
+            film_path: material.film_path,
+            film_ior: material.film_ior,
+            ..key.material
+        },
+        holds: Holds::Film { is_inside },
+        ..key
+    }
 }
 
 /// The key of the energies that a lobe keeps: the roughness of both lobes and, of a clear interface, its index.
@@ -410,22 +450,32 @@ fn scattering_key(material: &Material<f32>) -> TableKey {
 
 fn albedo_key(material: &Material<f32>, curve_table: &[f32], is_inside: bool) -> TableKey {
     // A table over the roughness serves every roughness, metalness and colour; any other is a dielectric's.
-    let is_rough = material.has_rough_tables == 1;
+    let is_rough = material.holds_integrals();
     let transmits = material.least_metallic().transmits();
     let is_measured = material.fresnel == Fresnel::Conductor as u32;
+    // What counts the coat's index apart from the dielectric's.
+    let meets_coat = material.has_flag(COATS_BASE) && (material.has_film == 1 || is_measured);
     let film = match material.has_film == 1 && (!is_rough || is_measured) {
         true => *material,
         // One over the roughness has no film in it, but for that on a measured metal.
         false => Material::default(),
     };
     let material = Material {
-        specular_color: material.specular_color,
+        // A factor of the exact equations is multiplied where the table is looked up.
+        specular_color: match material.fresnel == Fresnel::Dielectric as u32 {
+            true => Vec3::splat(1.0),
+            false => material.specular_color,
+        },
         specular_weight: material.specular_weight,
         eta: material.eta,
         ior: material.ior,
         reflecting_ior: material.reflecting_ior,
         k: material.k,
-        roughness: if is_rough { 0.0 } else { material.roughness },
+        roughness: if material.has_rough_tables == HOLDS_INTEGRALS {
+            0.0
+        } else {
+            material.roughness
+        },
         anisotropy: material.anisotropy,
         lobe: material.lobe,
         curve: material.curve,
@@ -436,8 +486,10 @@ fn albedo_key(material: &Material<f32>, curve_table: &[f32], is_inside: bool) ->
         film_weight: film.film_weight,
         film_path: film.film_path,
         film_ior: film.film_ior,
+        coat_ior: if meets_coat { material.coat_ior } else { 1.0 },
+        coat_weight: if meets_coat { material.coat_weight } else { 0.0 },
         // A dielectric without vertices.
-        flags: material.flags & WEIGHS_INDEX,
+        flags: material.flags & (WEIGHS_INDEX | if meets_coat { COATS_BASE } else { 0 }),
         transmission_weight: if transmits { 1.0 } else { 0.0 },
         ..Material::default()
     };

@@ -70,11 +70,13 @@ fn filmed_share(q: &FresnelQuestion, model: Fresnel) -> f32 {
         ior: q.eta,
         eta: Vec3::splat(q.eta),
         k: Vec3::splat(q.k),
+        coat: 1.0,
         has_film: true,
         film: FilmTerms {
             weight,
             ior,
             path: Vec3::splat(path),
+            ..FilmTerms::none_over(q.eta)
         },
     };
     fresnel(&terms, q.cosine).x

@@ -155,15 +155,15 @@ impl MaterialSettings {
         (self.coat_on_base, self.coat_darkening) = (false, 0.0);
     }
 
-    /// True if the specular weight is in a dielectric's index: one that is opaque and reflects by it.
+    /// True if the specular weight is in a dielectric's index: of what it reflects and of what it refracts.
     pub fn has_weight_in_index(&self) -> bool {
-        let has_index = matches!(self.fresnel, Fresnel::Schlick | Fresnel::Dielectric);
-        self.specular_in_index && has_index && !self.transmits()
+        self.specular_in_index && matches!(self.fresnel_model(), Fresnel::Schlick | Fresnel::Dielectric)
     }
 
     /// True where a thin film changes the reflection.
     pub fn has_film(&self) -> bool {
-        self.reflects() && has_film(self.fresnel_model(), self.film_weight, self.film_thickness)
+        (self.reflects() || self.has_weight_in_index())
+            && has_film(self.fresnel_model(), self.film_weight, self.film_thickness)
     }
 
     /// The Fresnel model that counts: only the exact equations know total reflection.

@@ -4,13 +4,13 @@
 //! too. It then holds the four integrals of which every Fresnel factor's albedo is a sum ([`rough_albedo`]), for the whole
 //! and for the dielectric alone, which covers the base.
 
-use super::frame::frame_from_normal;
+use super::frame::{Frame, frame_from_normal};
 use super::fresnel::{
     Fresnel, FresnelTerms, edge_darkening, edge_shape, fresnel, fresnel_dielectric, fresnel_f0, fresnel_schlick,
     half_vector_cosine,
 };
-use super::lobe::{LobeShape, lobe_sample};
-use super::material::Material;
+use super::lobe::{LobeShape, lobe_sample, stretch_from_anisotropy};
+use super::material::{Material, Surface};
 use super::random::even_point;
 use super::refraction::refracted_square;
 use super::table::{NODE_LENGTH, look_up_number, node_below};
@@ -77,37 +77,72 @@ fn node_cosine(node: usize, eta: f64) -> f64 {
     (critical_square + (eta * refracted).powi(2)).sqrt().min(1.0)
 }
 
-/// Table of the specular lobe's albedo over the view's cosine, from within or outside, for [`albedo_lookup`]; `samples` per
-/// node.
+/// Table of the specular lobe's albedo over the view's cosine, from within or outside, for [`albedo_lookup`]; of a stretched
+/// lobe over its azimuth too, for [`rough_albedo_lookup`]. `samples` per node.
 pub fn albedo_table(material: &Material<f64>, tables: &[f32], samples: u32, is_inside: bool) -> Vec<f32> {
     let shape = material.shape(tables);
     let terms = material.fresnel_terms(is_inside);
-    let means = |node: usize| {
-        let [r, g, b] = node_means(node, is_inside, material, &shape, samples, |cosine| {
-            fresnel(&terms, cosine).to_f64()
-        });
+    let is_stretched = material.is_over_azimuth();
+    let means = |index: usize| {
+        let turn = is_stretched.then(|| node_turn(index / ALBEDO_NODES, shape.anisotropy));
+        let [r, g, b] = node_means(
+            index % ALBEDO_NODES,
+            turn,
+            is_inside,
+            material,
+            &shape,
+            samples,
+            |cosine| fresnel(&terms, cosine).to_f64(),
+        );
         [r, g, b, 0.0]
     };
-    let nodes = parallel::map(ALBEDO_NODES, means).into_flattened();
+    let steps = if is_stretched { ROUGHNESS_NODES } else { 1 };
+    let nodes = parallel::map(steps * ALBEDO_NODES, means).into_flattened();
     nodes.into_iter().map(|x| x as f32).collect()
 }
 
-/// A view of this cosine to the normal, in the surface's frame; turned about the normal by a share of a whole turn, if one
-/// is given.
-#[inline(always)]
-pub fn view_at<T: Real>(cosine: T, turn: Option<T>) -> Vec3<T> {
-    let sine = (T::ONE - cosine * cosine).safe_sqrt();
-    let Some(turn) = turn else {
-        return vec3(sine, T::ZERO, cosine);
-    };
-    let azimuth_rad = T::TAU * turn;
-    vec3(sine * azimuth_rad.cos(), sine * azimuth_rad.sin(), cosine)
+inlined! {
+    /// A view of this cosine to the normal, in the surface's frame; turned about the normal by a share of a whole turn.
+    pub fn view_at<T: Real>(cosine: T, turn: T) -> Vec3<T> {
+        let sine = (T::ONE - cosine * cosine).safe_sqrt();
+        let azimuth_rad = T::TAU * turn;
+        vec3(sine * azimuth_rad.cos(), sine * azimuth_rad.sin(), cosine)
+    }
+
+    /// Table position of a view's azimuth over a stretched lobe, in [0, 1]: the lobe's width towards the view, between the
+    /// least and the largest. What the lobe keeps goes with that width.
+    pub fn azimuth_place<T: Real>(anisotropy: T, frame: &Frame<T>, wo: Vec3<T>) -> T {
+        let stretch = stretch_from_anisotropy(anisotropy);
+        let [wide, narrow] = [stretch * stretch, T::ONE / (stretch * stretch)];
+        let [x, y] = [frame.tangent.dot(wo), frame.bitangent.dot(wo)].map(|x| x * x);
+        let width = ((x * wide + y * narrow) / (x + y).max(T::from_f64(1e-30))).sqrt();
+        let [least, most] = [wide.min(narrow).sqrt(), wide.max(narrow).sqrt()];
+        (width - least) / (most - least).max(T::from_f64(1e-6))
+    }
+
+    /// The row of a material's tables that extend over roughness or azimuth, in [0, 1].
+    pub fn table_row<T: Real>(material: &Material<T>, surface: &Surface<T>) -> T {
+        match material.is_over_azimuth() {
+        true => azimuth_place(material.anisotropy, &surface.frame, surface.wo),
+        false => material.roughness,
+    }
+    }
 }
 
-/// Mean over a lobe, at a table node, of its weight times `factors` of the half vector's cosine; of a stretched lobe over all
-/// azimuths of the view.
+/// The share of a turn at a step of such a table: [`azimuth_place`] backwards.
+pub fn node_turn(step: usize, anisotropy: f64) -> f64 {
+    let stretch = stretch_from_anisotropy(anisotropy);
+    let [least, most] = [stretch.min(1.0 / stretch), stretch.max(1.0 / stretch)];
+    let width = least + (most - least) * step as f64 / (ROUGHNESS_NODES - 1) as f64;
+    let along = (width * width - 1.0 / (stretch * stretch)) / (stretch * stretch - 1.0 / (stretch * stretch));
+    along.clamp(0.0, 1.0).sqrt().acos() / std::f64::consts::TAU
+}
+
+/// Mean over a lobe, at a table node, of its weight times `factors` of the half vector's cosine; of a stretched lobe at this
+/// turn of the view, or over all.
 fn node_means<const N: usize>(
     node: usize,
+    turn: Option<f64>,
     is_inside: bool,
     material: &Material<f64>,
     shape: &LobeShape<'_, f64>,
@@ -122,8 +157,8 @@ fn node_means<const N: usize>(
     let is_stretched = shape.anisotropy != 0.0;
     let mut sums = [0.0; N];
     for i in 0..samples {
-        let [a, b, c, turn] = even_point(i);
-        let wo = view_at(cosine, is_stretched.then_some(turn));
+        let [a, b, c, any_turn] = even_point(i);
+        let wo = view_at(cosine, if is_stretched { turn.unwrap_or(any_turn) } else { 0.0 });
         let drawn = lobe_sample(shape, &frame, normal, wo, [a, b, c]);
         let factors = factors(half_vector_cosine(wo, drawn.wi));
         for (sum, factor) in sums.iter_mut().zip(factors) {
@@ -133,16 +168,44 @@ fn node_means<const N: usize>(
     sums.map(|sum| sum / f64::from(samples))
 }
 
-/// Table of a material with varying roughness, metalness or base colour, for [`rough_albedo_lookup`]; `samples` per node.
-pub fn rough_albedo_table(material: &Material<f64>, tables: &[f32], samples: u32, is_inside: bool) -> Vec<f32> {
+/// Table of a material with varying roughness, metalness or base colour, for [`rough_albedo_lookup`]; `samples` per node. Or
+/// of what a thin film changes of its dielectric, untinted.
+pub fn rough_albedo_table(
+    material: &Material<f64>,
+    tables: &[f32],
+    samples: u32,
+    is_inside: bool,
+    is_of_film: bool,
+) -> Vec<f32> {
     let terms = material.fresnel_terms(is_inside);
+    let film = FresnelTerms {
+        tint: Vec3::splat(1.0),
+        weight: 1.0,
+        ..terms.of_dielectric()
+    };
     let means = |index: usize| {
-        let shape = LobeShape {
-            roughness: (index / ALBEDO_NODES) as f64 / (ROUGHNESS_NODES - 1) as f64,
-            ..material.shape(tables)
+        let mut shape = material.shape(tables);
+        let step = index / ALBEDO_NODES;
+        let turn = material.is_over_azimuth().then(|| node_turn(step, shape.anisotropy));
+        if turn.is_none() {
+            shape.roughness = step as f64 / (ROUGHNESS_NODES - 1) as f64;
+        }
+        let factors = |cosine: f64| match is_of_film {
+            true => {
+                let [r, g, b] = film_change_of_dielectric(&film, cosine).to_f64();
+                [r, g, b, 0.0]
+            }
+            false => fresnel_basis(&terms, cosine),
         };
-        let factors = |cosine: f64| fresnel_basis(&terms, cosine);
-        node_means(index % ALBEDO_NODES, is_inside, material, &shape, samples, factors)
+        node_means(
+            index % ALBEDO_NODES,
+            turn,
+            is_inside,
+            material,
+            &shape,
+            samples,
+            factors,
+        )
     };
     let nodes = parallel::map(ROUGHNESS_NODES * ALBEDO_NODES, means).into_flattened();
     nodes.into_iter().map(|x| x as f32).collect()
@@ -194,9 +257,9 @@ fn between_nodes<const NUMBER: usize, T: Real>(table: &[f32], first: T, [beyond,
     smooth + (rough - smooth) * beyond_step
 }
 
-/// The albedo under a Fresnel factor, from its integrals.
+/// The albedo under a Fresnel factor, from its integrals, and the film's of the dielectric where they are known.
 #[inline(always)]
-pub fn rough_albedo<T: Real>(terms: &FresnelTerms<T>, integrals: [T; 4]) -> Vec3<T> {
+pub fn rough_albedo<T: Real>(terms: &FresnelTerms<T>, integrals: [T; 4], film: Option<Vec3<T>>) -> Vec3<T> {
     let [first, constant, grazing, edge] = integrals;
     if !terms.has_parts() {
         return vec3(first, constant, grazing) * terms.tint * terms.weight;
@@ -211,9 +274,13 @@ pub fn rough_albedo<T: Real>(terms: &FresnelTerms<T>, integrals: [T; 4]) -> Vec3
     let mut metal = (metal - darkening).at_least_zero() * terms.metal_tint;
     let mut dielectric = dielectric * terms.weight;
     if terms.has_film {
-        // No table has every thickness: the lobe counts as its mean facet.
+        // No table has every thickness or metal: the lobe counts as its mean facet.
         let [cosine, energy] = mean_facet([constant, grazing]);
-        dielectric = (dielectric + film_change_of_dielectric(terms, cosine) * energy).at_least_zero();
+        let change = match film {
+            Some(change) => change * terms.tint.map(|x| x.min(T::ONE)) * terms.weight,
+            None => film_change_of_dielectric(terms, cosine) * energy,
+        };
+        dielectric = (dielectric + change).at_least_zero();
         metal = (metal + film_change_of_metal(terms, cosine) * energy).at_least_zero();
     }
     dielectric.mix(metal, terms.metalness)

@@ -15,6 +15,7 @@ inlined! {
                 dielectric.mix(metal, terms.metalness)
             }
             Fresnel::Conductor => {
+                let cosine = terms.cosine_in_coat(cosine);
                 let mut channels = vec3(
                     fresnel_conductor(cosine, terms.eta.x, terms.k.x),
                     fresnel_conductor(cosine, terms.eta.y, terms.k.y),
@@ -117,33 +118,16 @@ pub fn fresnel_conductor<T: Real>(cosine: T, eta: T, k: T) -> T {
 }
 
 inlined! {
-    /// Transmittance of a facet, linear RGB in [0, 1]: 1 − [`fresnel`] without metal, which refracts nothing. Written to keep
-    /// precision if nearly everything is reflected. `cosine` is between the facet's normal and the view, `behind` between it and
-    /// the refracted direction, both in [0, 1].
+    /// Transmittance of a facet, linear RGB in [0, 1]: 1 − [`fresnel`] without metal, which refracts nothing, and without tint,
+    /// which is the reflection's alone (OpenPBR 1.1, "Dielectric base"). Written to keep precision if nearly everything is
+    /// reflected. `cosine` is between the facet's normal and the view, `behind` between it and the refracted direction, both
+    /// in [0, 1].
     pub fn fresnel_left<T: Real>(terms: &FresnelTerms<T>, cosine: T, behind: T) -> Vec3<T> {
-        let white = Vec3::ONE;
-        let mut left = match terms.model {
-            Fresnel::None | Fresnel::Conductor => {
-                let weight = T::ONE;
-                white - fresnel(&FresnelTerms { weight, ..*terms }, cosine)
-            }
-            Fresnel::Schlick => {
-                let c = cosine.clamp(T::ZERO, T::ONE);
-                // 1 − (1 − c)⁵.
-                let five = T::from_f64(5.0);
-                let ten = T::from_f64(10.0);
-                let beside_grazing = c * (five - c * (ten - c * (ten - c * (five - c))));
-                (white - terms.tint * fresnel_f0(terms.ior)) * beside_grazing
-            }
-            Fresnel::Dielectric => {
-                let through = fresnel_transmitted(cosine, behind, terms.ior);
-                white - terms.tint + terms.tint * through
-            }
-        };
-        if terms.has_film && terms.has_parts() {
-            left += terms.tint.map(|x| x.min(T::ONE)) * film_passed(terms, cosine, terms.ior * behind);
+        let mut left = Vec3::splat(fresnel_transmitted(cosine, behind, terms.ior));
+        if terms.has_film {
+            left += film_passed(terms, cosine, Some(terms.ior * behind));
         }
-        (white * (T::ONE - terms.weight) + left * terms.weight).at_least_zero()
+        (Vec3::splat(T::ONE - terms.weight) + left * terms.weight).at_least_zero()
     }
 
     /// The share that a boundary of two dielectrics lets through, by the cosines on both sides; `ior` as in

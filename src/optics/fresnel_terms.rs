@@ -1,5 +1,6 @@
 //! What the Fresnel factor is computed from, and the reflectances of metals known by colours: what films on them need too.
 
+use super::refraction::refracted_square;
 use crate::named::named;
 use crate::optics::prelude::*;
 
@@ -22,7 +23,7 @@ pub struct FresnelTerms<T> {
     /// 0 for a dielectric, 1 for a metal.
     pub metalness: T,
     /// Tint, linear RGB: of the reflectance at normal incidence in Schlick's model for a dielectric, else of the whole
-    /// factor.
+    /// factor; what goes through is untinted.
     pub tint: Vec3<T>,
     /// Factor of a metal's reflection: tint times weight, or 1 if those spare metals.
     pub metal_tint: Vec3<T>,
@@ -36,6 +37,8 @@ pub struct FresnelTerms<T> {
     pub eta: Vec3<T>,
     /// Conductor: imaginary part a channel, not negative.
     pub k: Vec3<T>,
+    /// Index of the coat over a conductor or a film, into which light from outside is refracted first; 1 without.
+    pub coat: T,
     /// True where the surface has a thin film.
     pub has_film: bool,
     pub film: FilmTerms<T>,
@@ -47,11 +50,25 @@ impl<T: Real> FresnelTerms<T> {
         matches!(self.model, Fresnel::Schlick | Fresnel::Dielectric)
     }
 
-    /// The same without metal.
-    #[inline(always)]
-    pub fn of_dielectric(&self) -> Self {
-        let metalness = T::ZERO;
-        Self { metalness, ..*self }
+    inlined! {
+        /// The cosine at which light meets a conductor or a film: within the coat, where there is one.
+        pub fn cosine_in_coat(&self, cosine: T) -> T {
+            let in_coat = (refracted_square(cosine, self.coat).safe_sqrt() / self.coat).min(T::ONE);
+            T::select(self.coat.differs(T::ONE), in_coat, cosine)
+        }
+
+        /// The same without a tint of the exact equations, which is the reflection's alone. Schlick's tint is the reflectance
+        /// head-on itself.
+        pub fn untinted(&self) -> Self {
+            let tint = if self.model == Fresnel::Dielectric { Vec3::ONE } else { self.tint };
+            Self { tint, ..*self }
+        }
+
+        /// The same without metal.
+        pub fn of_dielectric(&self) -> Self {
+            let metalness = T::ZERO;
+            Self { metalness, ..*self }
+        }
     }
 }
 
@@ -62,16 +79,20 @@ pub struct FilmTerms<T> {
     pub weight: T,
     /// Index of refraction over that of the medium before it.
     pub ior: T,
+    /// Index of the dielectric behind it over that of the medium before it.
+    pub behind: T,
     /// Phase of a crossing at normal incidence over the relative index, by channel.
     pub path: Vec3<T>,
 }
 
 impl<T: Real> FilmTerms<T> {
+    /// None, in air over a dielectric of this index.
     #[inline(always)]
-    pub fn none() -> Self {
+    pub fn none_over(behind: T) -> Self {
         Self {
             weight: T::ZERO,
             ior: T::ONE,
+            behind,
             path: Vec3::ZERO,
         }
     }

@@ -18,6 +18,10 @@ use crate::optics::prelude::*;
 
 /// The number of a texture that is not there.
 pub const NO_TEXTURE: u32 = u32::MAX;
+/// Bit of [`Material::has_rough_tables`]: the tables hold the integrals of [`rough_albedo`](super::albedo::rough_albedo).
+pub const HOLDS_INTEGRALS: u32 = 1;
+/// Bit of [`Material::has_rough_tables`]: the tables extend over the azimuth of the view, as the lobe is stretched.
+pub const OVER_AZIMUTH: u32 = 2;
 /// Nodes of the table that has a lobe's roughness for that of GGX.
 pub const MATCHED_NODES: usize = 17;
 
@@ -202,8 +206,9 @@ material! {
         alpha_cutoff: T = -1.0,
         /// Scales the slopes of the normal texture.
         normal_strength: T,
-        /// 1 if the surface is partly metal or varies: then the albedo tables extend over roughness
-        /// ([`rough_albedo_table`](super::albedo::rough_albedo_table)).
+        /// [`HOLDS_INTEGRALS`] if the surface is partly metal or varies
+        /// ([`rough_albedo_table`](super::albedo::rough_albedo_table)), [`OVER_AZIMUTH`] if the lobe is stretched and of one
+        /// roughness. 0: tables over the view's cosine alone; 1: over the roughness too.
         has_rough_tables: u32,
         /// Roughness that the texture multiplies; GGX's roughness if there is a `roughness_table`.
         texture_roughness: T,
@@ -331,7 +336,25 @@ impl<T: Real> Material<T> {
 
         /// True if its albedo table is followed by that under a whole coat, because a texture varies the coat.
         pub fn has_coated_table(&self) -> bool {
-            self.has_flag(COATS_BASE) && self.has_texture(&[TextureTarget::Coat])
+            let has_index = self.fresnel != Fresnel::Conductor as u32;
+            has_index && self.has_flag(COATS_BASE) && self.has_texture(&[TextureTarget::Coat])
+        }
+
+        /// True if its albedo tables hold the integrals of any Fresnel factor.
+        pub fn holds_integrals(&self) -> bool {
+            self.has_rough_tables & HOLDS_INTEGRALS != 0
+        }
+
+        /// True if its tables extend over the azimuth of the view.
+        pub fn is_over_azimuth(&self) -> bool {
+            self.has_rough_tables & OVER_AZIMUTH != 0
+        }
+
+        /// True if its albedo tables are followed by those of its thin film, which no texture varies.
+        pub fn has_film_table(&self) -> bool {
+            let has_index = [Fresnel::Schlick as u32, Fresnel::Dielectric as u32].contains(&self.fresnel);
+            let is_varied = self.has_texture(TextureTarget::OF_FILM) || self.has_coated_table();
+            self.has_film == 1 && self.holds_integrals() && has_index && !is_varied
         }
 
         /// True where textures change how the coat changes the roughness below it.
@@ -353,8 +376,15 @@ impl<T: Real> Material<T> {
             let weight = T::select(is_bare, T::ONE, self.specular_weight);
             let spares_metal = self.has_flag(SPARES_METAL);
             let is_in_index = self.has_flag(WEIGHS_INDEX);
+            let model = by_index(Fresnel::ALL, self.fresnel);
+            let [mut eta, mut k] = [self.eta, self.k];
+            let mut coat = T::ONE;
+            if model == Fresnel::Conductor || self.has_film == 1 {
+                coat = T::select(is_bare, coat, self.ior_of_coat());
+                [eta, k] = [eta / coat, k / coat];
+            }
             FresnelTerms {
-                model: by_index(Fresnel::ALL, self.fresnel),
+                model,
                 metal_f0: self.base_color,
                 metalness: self.metalness,
                 edge_tint: self.edge_tint,
@@ -362,22 +392,31 @@ impl<T: Real> Material<T> {
                 metal_tint: if spares_metal { white } else { tint * weight },
                 weight: if is_in_index { T::ONE } else { weight },
                 ior: self.reflecting_ior_ahead(is_inside),
-                eta: self.eta,
-                k: self.k,
+                eta,
+                k,
+                coat,
                 has_film: self.has_film == 1,
-                film: self.film_terms(is_bare),
+                film: self.film_terms(is_bare, coat),
             }
         }
 
-        /// The thin film, before it the interior where that is `within`, else air, or the coat as far as it counts.
-        fn film_terms(&self, within: T::Mask) -> FilmTerms<T> {
-            if self.has_film == 0 {
-                return FilmTerms::none();
+        /// The index before the specular interface: of the coat as far as it counts, or air.
+        fn ior_of_coat(&self) -> T {
+            if !self.has_flag(COATS_BASE) {
+                return T::ONE;
             }
-            let before = T::select(within, self.ior, self.ior / self.reflecting_ior);
+            T::ONE + (self.coat_ior - T::ONE) * self.coat_weight
+        }
+
+        fn film_terms(&self, within: T::Mask, coat: T) -> FilmTerms<T> {
+            if self.has_film == 0 {
+                return FilmTerms::none_over(self.ior);
+            }
+            let [before, behind] = [T::select(within, self.ior, coat), T::select(within, T::ONE, self.ior)];
             FilmTerms {
                 weight: self.film_weight,
                 ior: self.film_ior / before,
+                behind: behind / before,
                 path: self.film_path * before,
             }
         }
@@ -444,7 +483,9 @@ impl<T: Real> Material<T> {
             let is_spared = T::Mask::splat(self.has_flag(SPARES_METAL));
             let is_varied = self.has_texture(&[TextureTarget::Metalness]);
             let may_be_metal = self.metalness.above_zero() | T::Mask::splat(is_varied);
-            self.specular_weight.above_zero() | (is_spared & may_be_metal) | self.transmits()
+            // A film reflects in its own right where the index below it is as if it were not there.
+            let is_film = T::Mask::splat(self.has_film == 1 && self.has_flag(WEIGHS_INDEX));
+            self.specular_weight.above_zero() | (is_spared & may_be_metal) | self.transmits() | is_film
         }
     }
 }

@@ -7,7 +7,8 @@
 //! The base below a dielectric takes what its lobe loses, so that needs no factor.
 
 use super::albedo::{
-    ALBEDO_LENGTH, ALBEDO_NODES, ROUGH_ALBEDO_LENGTH, ROUGHNESS_NODES, albedo_lookup, rough_albedo_lookup, view_at,
+    ALBEDO_LENGTH, ALBEDO_NODES, ROUGH_ALBEDO_LENGTH, ROUGHNESS_NODES, albedo_lookup, node_turn, rough_albedo_lookup,
+    table_row, view_at,
 };
 use super::fresnel::{FresnelTerms, fresnel, fresnel_dielectric, fresnel_parts, fresnel_transmitted};
 use super::lanes::{InLanes, in_lanes};
@@ -16,7 +17,7 @@ use super::lobe::{LobeShape, microfacet_alpha};
 use super::material::{COMPENSATES, Material, Surface};
 use super::microfacet::{Alpha, smith_g1_over_cosine, smith_g2_over_cosine};
 use super::random::even_point;
-use super::refraction::{refracted, refracted_square};
+use super::refraction::refracted;
 use super::thin_film::film_passed;
 use crate::instructions::level;
 use crate::optics::prelude::*;
@@ -93,9 +94,10 @@ inlined! {
         channel: usize,
     ) -> [T; 3] {
         let place = surface.frame.normal.dot(surface.wo).safe_sqrt();
-        if material.has_rough_tables == 1 {
+        if material.has_rough_tables != 0 {
             let table = (channel * ROUGH_ALBEDO_LENGTH) as u32;
-            let [metal, outside, inside, _] = rough_albedo_lookup(shape.table, table, place, material.roughness);
+            let row = table_row(material, surface);
+            let [metal, outside, inside, _] = rough_albedo_lookup(shape.table, table, place, row);
             return [metal, outside, inside];
         }
         let kept = albedo_lookup(shape.table, (channel * ALBEDO_LENGTH) as u32, place);
@@ -103,19 +105,19 @@ inlined! {
     }
 }
 
-/// Table of the energies that a material's lobe keeps, over the root of the view's cosine, and over the roughness if its
-/// albedo tables are: of a white metal, of a clear interface from outside and from within, 0. One for each channel follows
+/// Table of the energies that a material's lobe keeps, over the root of the view's cosine, and over the roughness or the
+/// azimuth if its albedo tables are: of a white metal, of a clear interface from outside and from within, 0. One for each channel follows
 /// the other where a film shares the light of an interface. `samples` per node.
 pub fn scattering_table(material: &Material<f64>, samples: u32) -> Vec<f32> {
-    let is_rough = material.has_rough_tables == 1;
-    let steps = if is_rough { ROUGHNESS_NODES } else { 1 };
-    let offset = material.transmission_roughness - material.roughness;
-    let is_stretched = material.anisotropy != 0.0;
-    let points = Points::new(if is_stretched {
-        STRETCHED_SAMPLES * samples
+    let is_over_azimuth = material.is_over_azimuth();
+    let is_rough = material.has_rough_tables != 0 && !is_over_azimuth;
+    let steps = if material.has_rough_tables == 0 {
+        1
     } else {
-        samples
-    });
+        ROUGHNESS_NODES
+    };
+    let offset = material.transmission_roughness - material.roughness;
+    let points = Points::new(samples);
     let energies = |index: usize| {
         let (step, node) = (index / ALBEDO_NODES, index % ALBEDO_NODES);
         let roughness = match is_rough {
@@ -136,6 +138,7 @@ pub fn scattering_table(material: &Material<f64>, samples: u32) -> Vec<f32> {
                 alpha: microfacet_alpha(&material.shape(&[])),
                 clear: material.transmits().then_some(&material),
                 cosine,
+                turn: is_over_azimuth.then(|| node_turn(step, material.anisotropy)),
                 points: &points,
             },
         )
@@ -163,13 +166,11 @@ pub fn kept_energy(alpha: Alpha<f64>, cosine: f64, samples: u32) -> f64 {
         alpha,
         clear: None,
         cosine,
+        turn: None,
         points,
     };
     in_lanes(level(), kept)[0].x
 }
-
-/// Samples of a stretched lobe for each of another's: its mean is over all azimuths of the view, too.
-const STRETCHED_SAMPLES: u32 = 4;
 
 /// Points of the unit cube, coordinate by coordinate, in f32 as lanes load them.
 struct Points([Vec<f32>; 3]);
@@ -185,12 +186,14 @@ impl Points {
 }
 
 /// Energies that single scattering of GGX keeps for a view of this cosine, linear RGB: of a white metal, of a clear
-/// interface from outside and from within. A stretched lobe's are means over all azimuths of the view.
+/// interface from outside and from within.
 struct Kept<'a> {
     alpha: Alpha<f64>,
     /// The material of the clear interface, where there is one.
     clear: Option<&'a Material<f64>>,
     cosine: f64,
+    /// Share of a turn of the view over a stretched lobe; `None` for the mean over all.
+    turn: Option<f64>,
     points: &'a Points,
 }
 
@@ -215,11 +218,10 @@ impl Kept<'_> {
         let mut first = 0;
         while first < count {
             let xi = [T::load(&across[first..]), T::load(&up[first..]), T::ZERO];
-            let turn = match is_stretched {
-                true => Some(T::load(&azimuths[first..])),
-                false => None,
+            let wo = match (is_stretched, self.turn) {
+                (true, None) => view_at(cosine, T::load(&azimuths[first..])),
+                (_, turn) => view_at(cosine, T::from_f64(turn.unwrap_or(0.0))),
             };
-            let wo = view_at(cosine, turn);
             let h = visible_normal(alpha, wo, xi);
             let wi = wo.mirrored_about(h);
             let mirrored = smith_g2_over_cosine(alpha, wo, wi) / smith_g1_over_cosine(alpha, wo);
@@ -316,13 +318,12 @@ impl<T: Real> Side<T> {
             if !self.terms.has_film {
                 return Vec3::ZERO;
             }
-            let height = refracted_square(cosine, self.terms.ior).safe_sqrt();
-            film_passed(&self.terms, cosine, height)
+            film_passed(&self.terms, cosine, None)
         }
 
         /// The share that a facet reflects, under a film that lets this much more through.
         fn reflected(&self, cosine: T, film: Vec3<T>) -> Vec3<T> {
-            Vec3::splat(fresnel_dielectric(cosine, self.terms.ior)) - film
+            (Vec3::splat(fresnel_dielectric(cosine, self.terms.ior)) - film) * self.terms.weight
         }
 
         /// The share that a facet with the normal `h` refracts, as far as it is seen behind.
@@ -331,7 +332,10 @@ impl<T: Real> Side<T> {
             let (zero, one) = (T::ZERO, T::ONE);
             let [before, behind] = [wo.dot(h).clamp(zero, one), (-refracted.wi.dot(h)).clamp(zero, one)];
             let share = match self.has_one_index {
-                true => Vec3::splat(fresnel_transmitted(before, behind, self.eta)) + film,
+                true => {
+                    let passed = Vec3::splat(fresnel_transmitted(before, behind, self.eta)) + film;
+                    Vec3::splat(one - self.terms.weight) + passed * self.terms.weight
+                }
                 false => Vec3::splat(one) - self.reflected(before, film),
             };
             let seen = smith_g1_over_cosine(through, refracted.wi) * refracted.wi.z.abs();

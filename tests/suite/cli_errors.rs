@@ -175,7 +175,7 @@ fn wrong_arguments_are_refused() {
         ("--filter tent", ["--filter", "gaussian"]),
         ("--tone-map gamma", ["--tone-map", "agx"]),
         ("--sequence halton", ["--sequence", "sobol"]),
-        ("--engine abacus", ["--engine", "auto, gpu or cpu"]),
+        ("--engine abacus", ["--engine", "auto, gpu, cpu"]),
         ("--seed -1", ["--seed", "-1"]),
         ("--ground=perhaps", ["--ground", "on or off"]),
         (

@@ -176,7 +176,7 @@ fn a_turntable_is_a_video_where_that_is_asked_for() {
         assert!(error < 2.0, "frame {number} is off by {error} codes");
     }
     place.refused(2, "turntable --video turn.avi", &["turn.avi", ".mp4 or .gif"]);
-    place.refused(2, "turntable --video turn.mp4 --fps 0", &["frames a second"]);
+    place.refused(2, "turntable --video turn.mp4 --fps 0", &["--fps", "from 1 to 120"]);
     place.refused(
         1,
         &format!("turntable {scene} --video nowhere/turn.mp4"),

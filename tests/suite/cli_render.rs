@@ -83,6 +83,7 @@ fn the_report_has_its_keys_and_their_types() {
         "height",
         "samples_per_pixel",
         "mean_samples_per_pixel",
+        "mean_luminance",
         "noise",
         "noise_low",
         "noise_high",

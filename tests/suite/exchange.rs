@@ -167,8 +167,9 @@ fn reflectance_apart(a: &MaterialSettings, b: &MaterialSettings) -> f64 {
         },
         eta: Vec3::from_f32(m.eta),
         k: Vec3::from_f32(m.k),
+        coat: 1.0,
         has_film: false,
-        film: FilmTerms::none(),
+        film: FilmTerms::none_over(1.5),
     };
     let (a, b) = (terms(a), terms(b));
     let apart = (0..=64).map(|i| {

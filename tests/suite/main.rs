@@ -85,6 +85,7 @@ mod import_report;
 mod instances;
 mod kept_files;
 mod killed;
+mod layer_stacks;
 mod library;
 mod light_groups;
 mod light_paths;

@@ -19,7 +19,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
         "cpu",
         &["parallel", "named", "panics", "instructions", "optics", "scene", "job"],
     ),
-    ("gpu", &["named", "panics", "optics", "scene", "job"]),
+    ("gpu", &["parallel", "named", "panics", "optics", "scene", "job"]),
     ("analysis", &["parallel", "named", "panics", "optics", "scene", "job"]),
     ("plot", &["parallel", "named", "optics", "job", "analysis"]),
     ("document", &["named", "panics", "optics", "scene", "import", "job"]),

@@ -34,8 +34,12 @@ fn terms<T: Scalar>(model: Fresnel, ior: f64, [eta, k]: [f64; 2], film: FilmTerm
         ior: T::from_f64(ior),
         eta: splat(eta),
         k: splat(k),
+        coat: T::ONE,
         has_film: true,
-        film,
+        film: FilmTerms {
+            behind: T::from_f64(ior),
+            ..film
+        },
     }
 }
 
@@ -45,6 +49,7 @@ fn film_for<T: Scalar>(ior: f64, thickness_nm: f64, wavelength_nm: f64) -> FilmT
         weight: T::ONE,
         ior: T::from_f64(ior),
         path: Vec3::splat(T::from_f64(TAU * thickness_nm / wavelength_nm)),
+        ..FilmTerms::none_over(T::ONE)
     }
 }
 
@@ -126,6 +131,7 @@ fn films_join_what_has_none() {
                 weight: 1.0,
                 ior: 1.7,
                 path: Vec3::ZERO,
+                ..FilmTerms::none_over(1.5)
             };
             let filmed = FresnelTerms {
                 metal_f0: vec3(0.95, 0.6, 0.1),

@@ -28,6 +28,7 @@ const ALONE: &[(&str, &[&str])] = &[
         "asks the plan's constants, which the CPU engine does not have: it looks at the values themselves",
         &[
             "compensates",
+            "has_rows",
             "has_vertex_flag",
             "looks_up_textures",
             "planned",
@@ -45,7 +46,7 @@ const ALONE: &[(&str, &[&str])] = &[
     ),
     (
         "reads a vertex that is packed otherwise: methods of `Vertex` in src/scene/part.rs",
-        &["corner_color"],
+        &["corner_color", "vertex_side"],
     ),
     (
         "searches cells of a texture; slices are searched by src/scene/inversion.rs",

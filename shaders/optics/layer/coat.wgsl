@@ -7,11 +7,15 @@ fn coat_is_there(material: Material, surface: Surface) -> bool {
 }
 
 fn coat_lobe(material: Material, layers: Layers, surface: Surface) -> LayerLobe {
-    var frame = frame_from_normal(surface.coat_normal);
-    if PLAN_ANISOTROPY && material.coat_anisotropy != 0.0 {
-        frame = frame_from_tangent(surface.coat_normal, surface.frame.tangent, 0.0);
-    }
+    let frame = coat_frame(material, surface);
     return LayerLobe(coat_is_there(material, surface), coat_shape(material), frame, layers.coat);
+}
+
+fn coat_frame(material: Material, surface: Surface) -> Frame {
+    if PLAN_ANISOTROPY && material.coat_anisotropy != 0.0 {
+        return frame_from_tangent(surface.coat_normal, surface.frame.tangent, 0.0);
+    }
+    return frame_from_normal(surface.coat_normal);
 }
 
 fn coat_shape(material: Material) -> LobeShape {
@@ -27,6 +31,9 @@ fn coat_albedo(material: Material, surface: Surface) -> LayerAlbedo {
     var share = material.coat_weight;
     if PLAN_COAT_TEXTURES && material.coat_roughness_texture != NO_TEXTURE {
         share *= rough_albedo_lookup(material.coat_table, cosine, material.coat_roughness).x;
+    } else if PLAN_ANISOTROPY && material.coat_anisotropy != 0.0 {
+        let row = azimuth_place(material.coat_anisotropy, coat_frame(material, surface), surface.wo);
+        share *= rough_albedo_lookup(material.coat_table, cosine, row).x;
     } else {
         share *= albedo_lookup(material.coat_table, cosine).x;
     }

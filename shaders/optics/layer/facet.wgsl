@@ -8,7 +8,11 @@ fn passes_on(material: Material) -> bool {
 // One facet is drawn that mirrors or refracts, as its Fresnel factor has it.
 fn shares_facets(material: Material) -> bool {
     return material_transmits(material) && facets(planned(material.lobe, PLAN_LOBE)) != FACETS_NONE
-        && material.transmission_roughness == material.roughness;
+        && material.transmission_roughness == material.roughness && bends(material);
+}
+
+fn bends(material: Material) -> bool {
+    return material.ior != 1.0;
 }
 
 fn decides_by_facet(material: Material) -> bool {

@@ -129,7 +129,11 @@ fn material_layers(material: Material, surface: Surface) -> Layers {
     if PLAN_TRANSMISSION && material_transmits(material) {
         layers.transmission.albedo = transmission_albedo(material, surface, left);
     }
-    let beneath = specular_choose(material, &layers, luminance(layers.base.albedo) + luminance(layers.transmission.albedo));
+    var below_specular = luminance(layers.base.albedo);
+    if PLAN_TRANSMISSION {
+        below_specular += transmission_estimate(material, layers);
+    }
+    let beneath = specular_choose(material, &layers, below_specular);
     let coat = cover_choose(layers.coat.albedo, beneath);
     layers.coat.probability = coat.x;
     layers.fuzz.probability = cover_choose(layers.fuzz.albedo, coat.y).x;

@@ -24,7 +24,7 @@ fn specular_choose(material: Material, layers: ptr<function, Layers>, below: f32
     share = select(1.0, share, below > 0.0);
     // The part passed on is exactly the part not reflected, no estimate.
     share = select(share, min(specular, 1.0), passes_on(material));
-    let through = (1.0 - share) * (luminance((*layers).transmission.albedo) / max(below, 1e-9));
+    let through = (1.0 - share) * (transmission_estimate(material, *layers) / max(below, 1e-9));
     (*layers).specular.probability = share;
     (*layers).transmission.probability = through;
     (*layers).base.probability = 1.0 - share - through;
@@ -60,21 +60,32 @@ fn specular_albedos(material: Material, surface: Surface) -> mat2x3f {
         place = albedo_place(place, material_ior_ahead(material, true));
         first = material.inner_albedo_table;
     }
-    if PLAN_ROUGH_TABLES && material.has_rough_tables == 1u {
-        var integrals = rough_albedo_lookup(first, place, material.roughness);
+    let terms = material_fresnel_terms(material, surface.is_inside);
+    var mean = vec3f();
+    if has_rows(material) {
+        let row = table_row(material, surface);
+        var integrals = rough_albedo_lookup(first, place, row);
+        mean = integrals.xyz;
         if first == material.albedo_table && PLAN_COAT_TEXTURES && has_coated_table(material) {
-            integrals.x = dielectric_under_coat(material, place, integrals.x);
+            integrals.x = dielectric_under_coat(material, vec2f(place, row), integrals.x);
         }
-        let terms = material_fresnel_terms(material, surface.is_inside);
-        return mat2x3f(rough_albedo(terms, integrals), rough_albedo(of_dielectric(terms), integrals));
+        if holds_integrals(material) {
+            var film = vec4f();
+            if PLAN_THIN_FILM && has_film_table(material) {
+                film = vec4f(rough_albedo_lookup(first + ROUGH_ALBEDO_LENGTH, place, row).xyz, 1.0);
+            }
+            let below = of_dielectric(untinted(terms));
+            return mat2x3f(rough_albedo(terms, integrals, film), rough_albedo(below, integrals, film));
+        }
+    } else {
+        mean = albedo_lookup(first, place);
     }
-    let taken = albedo_lookup(first, place);
-    return mat2x3f(taken, taken);
+    return mat2x3f(mean * select(vec3f(1.0), terms.tint, terms.model == FRESNEL_DIELECTRIC), mean);
 }
 
 // The dielectric's integral where a texture varies the coat over it.
-fn dielectric_under_coat(material: Material, place: f32, bare: f32) -> f32 {
-    let coated = rough_albedo_lookup(material.albedo_table + ROUGH_ALBEDO_LENGTH, place, material.roughness).x;
+fn dielectric_under_coat(material: Material, place: vec2f, bare: f32) -> f32 {
+    let coated = rough_albedo_lookup(material.albedo_table + ROUGH_ALBEDO_LENGTH, place.x, place.y).x;
     let least = fresnel_f0(ior_under_coat(material, 0.0));
     let most = fresnel_f0(ior_under_coat(material, 1.0));
     let share = (fresnel_f0(material.reflecting_ior) - least) / select(1.0, most - least, most != least);

@@ -82,6 +82,8 @@ fn facet_weight(shape: LobeShape, frame: Frame, wo: vec3f, wi: vec3f, mirrored: 
         // Normals on the far side of the facets are drawn too; the viewer sees none of them.
         weight *= smith_g1_over_cosine(alpha, wo_local) * select(0.0, ratio, of_mirrored.h.z > 0.0);
     }
+    // What nothing bends meets no facet.
+    weight = select(weight, 1.0, shape.eta == 1.0);
     return select(0.0, weight, wi_local.z < 0.0 && wo_local.z > 0.0);
 }
 

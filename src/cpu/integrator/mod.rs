@@ -50,7 +50,7 @@ pub const BELOW_DIMENSION: u32 = 4096;
 /// First dimension of the opacity tests, one pair per bounce.
 pub const OPACITY_DIMENSION: u32 = 8192;
 /// Transparent hits per ray at most. Beyond them a path's ray counts as a miss, and a shadow ray as blocked.
-pub const PASSES_MAX: u32 = 256;
+pub const PASSES_MAX: u32 = 4096;
 /// Number of bounces without Russian roulette.
 pub const ROULETTE_START: u32 = 3;
 /// Largest radiance per channel that is kept. Its square would overflow f32; larger samples are dropped and counted.
@@ -81,7 +81,6 @@ pub(super) struct Integrator<'a, T: Single> {
     textures: &'a Textures,
     has_holes: bool,
     has_absorption: bool,
-    has_transmission: bool,
     settings: &'a Settings,
     materials: Vec<Material<T>>,
     /// The same materials for a single lane.
@@ -161,7 +160,6 @@ impl<'a, T: Single> Integrator<'a, T> {
             textures: &job.textures,
             has_holes: job.plan.has(EffectId::Alpha),
             has_absorption: job.plan.has(EffectId::Absorption),
-            has_transmission: job.plan.has(EffectId::Transmission),
             settings: &job.settings,
             materials: job.materials.iter().map(Material::cast).collect(),
             scalar_materials: &job.materials,
@@ -292,12 +290,11 @@ impl<'a, T: Single> Integrator<'a, T> {
             }
             let is_active = vertex.bounce < self.settings.bounces;
             if !is_active {
-                if self.has_transmission {
-                    let cut = vertex.throughput.luminance().to_each();
-                    let lanes =
-                        std::iter::zip(0.., cut.as_ref()).filter(|(lane, _)| vertex.active.to_bits() >> lane & 1 == 1);
-                    paths.cut += lanes.map(|(_, cut)| cut.to_f64()).sum::<f64>();
-                }
+                // What the surface would have scattered on: a lamp or a black wall ends no light.
+                let albedo = material_albedo(material, &point.surface, layers);
+                let cut = (vertex.throughput * albedo).luminance().to_each();
+                let lanes = std::iter::zip(0.., cut.as_ref()).filter(|(lane, _)| vertex.active.to_bits() >> lane & 1 == 1);
+                paths.cut += lanes.map(|(_, cut)| cut.to_f64()).sum::<f64>();
                 let nowhere = T::Mask::splat(false);
                 vertex.group.set_flags(&mut paths.is_active, vertex.active, nowhere);
                 vertex

@@ -99,6 +99,7 @@ impl<T: Single> Integrator<'_, T> {
             xi = (xi - opacity) / (1.0 - opacity).max(1e-20);
             origin = passed_origin(self.geometry, &hit, direction);
         }
+        paths.cut += f64::from(paths.state.throughput.get(index).luminance());
         false
     }
 }

@@ -222,7 +222,7 @@ effects! {
         ),
         Textures(&[On::Roughness]);
     RoughTables "Energy-compensation tables" "What the base is left with where a texture changes the roughness, or the surface is metal in part."
-        AnyMaterial(|m| m.has_rough_tables == 1, "is metal in part, or its roughness changes over a base"),
+        AnyMaterial(|m| m.holds_integrals(), "is metal in part, or its roughness changes over a base"),
         Never;
     NormalMap "Normal maps" "Shading normals from normal maps."
         AnyMaterial(|m| m.has_texture(&[On::Normal]), "has a normal map"),

@@ -9,7 +9,7 @@
 //! other coat is glTF's: its colour is that of every direction.
 
 use super::*;
-use crate::optics::albedo::{albedo_lookup, rough_albedo_lookup};
+use crate::optics::albedo::{albedo_lookup, azimuth_place, rough_albedo_lookup};
 use crate::optics::coat_medium::{color_over, way_length};
 use crate::optics::curve::Curve;
 use crate::optics::frame::{frame_from_normal, frame_from_tangent};
@@ -36,20 +36,15 @@ impl<T: Real> LayerModel<T> for Coat {
 
         /// Stretched along the tangent of the layers below.
         fn lobe<'a>(material: &Material<T>, _: &'a [f32], surface: &Surface<T>) -> LayerLobe<'a, T> {
-            let is_stretched = material.coat_anisotropy.differs(T::ZERO).any();
             LayerLobe {
                 shape: coat_shape(material),
-                frame: if is_stretched {
-                    frame_from_tangent(surface.coat_normal, surface.frame.tangent, T::ZERO)
-                } else {
-                    frame_from_normal(surface.coat_normal)
-                },
+                frame: coat_frame(material, surface),
             }
         }
 
         fn albedo(material: &Material<T>, tables: &[f32], surface: &Surface<T>, _: Vec3<T>) -> LayerAlbedo<T> {
             let cosine = surface.coat_normal.dot(surface.wo);
-            let share = material.coat_weight * coat_albedo(material, tables, cosine);
+            let share = material.coat_weight * coat_albedo(material, tables, surface, cosine);
             let left = (T::ONE - share).max(T::ZERO);
             let white = Vec3::ONE;
             let mut transmittance = if material.has_flag(COATS_BASE) {
@@ -101,12 +96,24 @@ inlined! {
     }
 
     /// Albedo of a coat of weight 1.
-    fn coat_albedo<T: Real>(material: &Material<T>, tables: &[f32], cosine: T) -> T {
-        if !material.has_texture(&[TextureTarget::CoatRoughness]) {
+    fn coat_albedo<T: Real>(material: &Material<T>, tables: &[f32], surface: &Surface<T>, cosine: T) -> T {
+        let row = if material.has_texture(&[TextureTarget::CoatRoughness]) {
+            material.coat_roughness
+        } else if material.coat_anisotropy.differs(T::ZERO).any() {
+            azimuth_place(material.coat_anisotropy, &coat_frame(material, surface), surface.wo)
+        } else {
             return albedo_lookup(tables, material.coat_table, cosine).x;
-        }
-        let [albedo, ..] = rough_albedo_lookup(tables, material.coat_table, cosine, material.coat_roughness);
+        };
+        let [albedo, ..] = rough_albedo_lookup(tables, material.coat_table, cosine, row);
         albedo
+    }
+
+    fn coat_frame<T: Real>(material: &Material<T>, surface: &Surface<T>) -> Frame<T> {
+        if material.coat_anisotropy.differs(T::ZERO).any() {
+            frame_from_tangent(surface.coat_normal, surface.frame.tangent, T::ZERO)
+        } else {
+            frame_from_normal(surface.coat_normal)
+        }
     }
 
     /// The share that the coat reflects into a direction of its lobe.

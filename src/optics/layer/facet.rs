@@ -19,7 +19,14 @@ inlined! {
     /// critical angle is from almost none to all (Walter et al. 2007, section 5.3).
     pub fn shares_facets<T: Real>(material: &Material<T>) -> T::Mask {
         let has_facets = by_index(Lobe::ALL, material.lobe).facets() != Facets::None;
-        material.transmits() & T::Mask::splat(has_facets) & !material.transmission_roughness.differs(material.roughness)
+        let is_apart = material.transmission_roughness.differs(material.roughness);
+        material.transmits() & T::Mask::splat(has_facets) & !is_apart & bends(material)
+    }
+
+    /// Lanes whose dielectric bends light. One of index 1 under a film or a coat does not: then no facet can be told from the
+    /// directions, and all that the specular lobe does not reflect goes straight on.
+    pub fn bends<T: Real>(material: &Material<T>) -> T::Mask {
+        material.ior.differs(T::ONE)
     }
 
     /// Lanes where the Fresnel factor of a sampled direction decides its layer ([`passes_on`], or shared facets); otherwise the

@@ -1,9 +1,12 @@
 //! The specular lobe: it reflects the Fresnel share; base and transmission share the rest.
 
 use super::facet::{left_by_facet, mirrored_share, shares_facets};
+use super::transmission::transmission_estimate;
 use super::*;
-use crate::optics::albedo::{ROUGH_ALBEDO_LENGTH, albedo_lookup, albedo_place, rough_albedo, rough_albedo_lookup};
-use crate::optics::fresnel::{fresnel, fresnel_f0, half_vector_cosine};
+use crate::optics::albedo::{
+    ROUGH_ALBEDO_LENGTH, albedo_lookup, albedo_place, rough_albedo, rough_albedo_lookup, table_row,
+};
+use crate::optics::fresnel::{Fresnel, fresnel, fresnel_f0, half_vector_cosine};
 use crate::optics::refraction::refracted_square;
 use crate::optics::scattering::scattered_again;
 
@@ -61,7 +64,7 @@ impl<T: Real> LayerModel<T> for Specular {
         fn choose(material: &Material<T>, layers: &mut Layers<T>, below: T) -> T {
             let (zero, one) = (T::ZERO, T::ONE);
             let specular = layers[Layer::Specular].albedo.luminance();
-            let through = layers[Layer::Transmission].albedo.luminance();
+            let through = transmission_estimate(material, layers);
             let share = sampled_share(specular / (specular + below).max(T::from_f64(1e-9)));
             let share = T::select(below.above_zero(), share, one);
             // The part passed on is exactly the part not reflected, no estimate.
@@ -131,26 +134,40 @@ inlined! {
         table: u32,
         place: T,
     ) -> [Vec3<T>; 2] {
-        if material.has_rough_tables == 1 {
-            let mut integrals = rough_albedo_lookup(tables, table, place, material.roughness);
+        let terms = material.fresnel_terms(surface.is_inside);
+        let untinted = terms.untinted();
+        if material.holds_integrals() {
+            let row = table_row(material, surface);
+            let mut integrals = rough_albedo_lookup(tables, table, place, row);
             if table == material.albedo_table && material.has_coated_table() {
-                integrals[0] = dielectric_under_coat(material, tables, place, integrals[0]);
+                integrals[0] = dielectric_under_coat(material, tables, [place, row], integrals[0]);
             }
-            let terms = material.fresnel_terms(surface.is_inside);
+            let film = material.has_film_table().then(|| {
+                let table = table + ROUGH_ALBEDO_LENGTH as u32;
+                let [r, g, b, _] = rough_albedo_lookup(tables, table, place, row);
+                vec3(r, g, b)
+            });
             return [
-                rough_albedo(&terms, integrals),
-                rough_albedo(&terms.of_dielectric(), integrals),
+                rough_albedo(&terms, integrals, film),
+                rough_albedo(&untinted.of_dielectric(), integrals, film),
             ];
         }
-        // A partly metallic material has the other table.
-        [albedo_lookup(tables, table, place); 2]
+        // A partly metallic material has the other table. This one is untinted where the tint is a factor.
+        let mean = if material.is_over_azimuth() {
+            let [r, g, b, _] = rough_albedo_lookup(tables, table, place, table_row(material, surface));
+            vec3(r, g, b)
+        } else {
+            albedo_lookup(tables, table, place)
+        };
+        let tint = if terms.model == Fresnel::Dielectric { terms.tint } else { Vec3::ONE };
+        [mean * tint, mean]
     }
 
     /// The dielectric's integral where a texture varies the coat over it: between those without and under a whole coat, as the
     /// reflectances head-on are.
-    fn dielectric_under_coat<T: Real>(material: &Material<T>, tables: &[f32], place: T, bare: T) -> T {
+    fn dielectric_under_coat<T: Real>(material: &Material<T>, tables: &[f32], [place, row]: [T; 2], bare: T) -> T {
         let table = material.albedo_table + ROUGH_ALBEDO_LENGTH as u32;
-        let [coated, ..] = rough_albedo_lookup(tables, table, place, material.roughness);
+        let [coated, ..] = rough_albedo_lookup(tables, table, place, row);
         let [zero, one] = [T::ZERO, T::ONE].map(|weight| fresnel_f0(material.ior_under_coat(weight)));
         let there = fresnel_f0(material.reflecting_ior);
         let share = (there - zero) / T::select(one.differs(zero), one - zero, T::ONE);

@@ -1,7 +1,7 @@
 //! The refracting lobe: for microfacet lobes the share that the facet does not reflect, for others the mean share that the
 //! specular lobe leaves.
 
-use super::facet::{left_by_facet, mirrored_share, shares_facets};
+use super::facet::{bends, left_by_facet, mirrored_share, shares_facets};
 use super::*;
 use crate::optics::fresnel::fresnel;
 use crate::optics::lobe::refracts_at_facets;
@@ -27,7 +27,13 @@ impl<T: Real> LayerModel<T> for Transmission {
             }
         }
 
-        fn albedo(material: &Material<T>, _: &[f32], _: &Surface<T>, left: Vec3<T>) -> LayerAlbedo<T> {
+        fn albedo(material: &Material<T>, tables: &[f32], surface: &Surface<T>, left: Vec3<T>) -> LayerAlbedo<T> {
+            let is_bent = bends(material);
+            let mut left = left;
+            if !is_bent.all() {
+                let gain = interface_gain(material, surface, &material.shape(tables));
+                left = Vec3::select(is_bent, left, (Vec3::ONE - (Vec3::ONE - left) * gain).at_least_zero());
+            }
             let left_by_metal = left * (T::ONE - material.metalness);
             LayerAlbedo {
                 reflected: material.transmission_tint * left_by_metal * material.transmission_weight,
@@ -51,6 +57,7 @@ impl<T: Real> LayerModel<T> for Transmission {
                 return toward;
             }
             let cosines = refracting_cosines(surface.wo, wi, shape.eta);
+            let straight = toward.color;
             toward.color = left_by_facet(material, surface, cosines);
             let is_shared = shares_facets(material);
             if is_shared.any() {
@@ -60,13 +67,15 @@ impl<T: Real> LayerModel<T> for Transmission {
                 let share = T::ONE - mirrored_share(reflected, refracted);
                 toward.probability = T::select(is_shared, of_facets * share, toward.probability);
             }
-            toward.color = toward.color * interface_gain(material, surface, shape);
+            let by_facet = toward.color * interface_gain(material, surface, shape);
+            toward.color = Vec3::select(bends(material), by_facet, straight);
             toward
         }
 
-        /// The specular lobe sets how often its rest is sampled.
-        fn choose(_: &Material<T>, layers: &mut Layers<T>, _below: T) -> T {
-            layers[Layer::Transmission].albedo.luminance()
+        /// The specular lobe sets how often its rest is sampled. Facets of another roughness let light through where the mean
+        /// of the specular lobe's lets none: beyond its critical angle.
+        fn choose(material: &Material<T>, layers: &mut Layers<T>, _below: T) -> T {
+            transmission_estimate(material, layers)
         }
 
         /// It takes the rest of the samples.
@@ -74,4 +83,15 @@ impl<T: Real> LayerModel<T> for Transmission {
             T::ONE
         }
     }
+}
+
+/// The least share of samples for a refraction of another roughness than the reflection.
+pub const APART_LEAST: f64 = 0.1;
+
+/// Luminance of the refracting lobe, as samples are shared by it.
+#[inline(always)]
+pub fn transmission_estimate<T: Real>(material: &Material<T>, layers: &Layers<T>) -> T {
+    let mean = layers[Layer::Transmission].albedo.luminance();
+    let is_apart = material.transmits() & material.transmission_roughness.differs(material.roughness);
+    T::select(is_apart, mean.max(T::from_f64(APART_LEAST)), mean)
 }

@@ -325,6 +325,8 @@ pub fn facet_weight<T: Real>(
         weight = weight * smith_g1_over_cosine(alpha, wo_local) * ratio;
     }
     let is_behind = wi_local.z.below_zero() & wo_local.z.above_zero();
+    // What nothing bends meets no facet.
+    let weight = T::select(shape.eta.differs(T::ONE), weight, T::ONE);
     weight.masked(is_behind)
 }
 

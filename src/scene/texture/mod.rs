@@ -19,7 +19,7 @@ use super::triangle_normal;
 use crate::optics::frame::frame_from_tangent;
 use crate::optics::layer::fuzz::FUZZ_ROUGHNESS_MIN;
 use crate::optics::material::{
-    COATS_BASE, MATCHED_NODES, Material, NO_TEXTURE, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY, coat_blur,
+    MATCHED_NODES, Material, NO_TEXTURE, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY, coat_blur,
 };
 use crate::optics::numeric::normalize_or;
 use crate::optics::prelude::*;
@@ -400,7 +400,7 @@ pub fn emission_at<T: Scalar>(
 pub fn put_coat<T: Scalar>(material: &mut Material<T>, textures: &Textures, uvs: Uvs<T>) {
     if let Some((weight, _)) = material_lookup(textures, material, On::Coat, uvs) {
         material.coat_weight = material.coat_weight * weight.x;
-        if material.has_flag(COATS_BASE) {
+        if material.has_coated_table() {
             material.reflecting_ior = material.ior_under_coat(material.coat_weight);
         }
     }

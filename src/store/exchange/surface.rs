@@ -266,7 +266,7 @@ impl Surface {
         };
         let mut ior = f64::from(self.ior);
         let mut of_dielectric = weight;
-        if takes.has("specular.weight_in_index") && self.transmission_weight == 0.0 {
+        if takes.has("specular.weight_in_index") {
             (ior, of_dielectric) = (weighted_ior(ior, weight), 1.0);
         }
         let dielectric = match takes.law {
@@ -485,7 +485,8 @@ fn fresnel_terms(material: &MaterialSettings) -> FresnelTerms<f64> {
         k: Vec3::from_f32(material.k),
         // A thin film is reported as a part of its own.
         has_film: false,
-        film: FilmTerms::none(),
+        coat: 1.0,
+        film: FilmTerms::none_over(1.0),
     }
 }
 

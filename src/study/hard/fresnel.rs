@@ -210,9 +210,9 @@ fn share(heights: [Complex; 3], weights: [Complex; 3], turn: Complex) -> f64 {
 
 fn exact(q: &FresnelQuestion) -> f64 {
     let [weight, film_ior, path] = q.film.map(f64::from);
-    // Without a film any index does.
-    let film_ior = if weight == 0.0 { 1.0 } else { film_ior };
-    let c = f64::from(q.cosine).max(1e-12);
+    // Without a film any index does, and light may graze.
+    let (film_ior, least) = if weight == 0.0 { (1.0, 1e-40) } else { (film_ior, 1e-12) };
+    let c = f64::from(q.cosine).max(least);
     let (eta, k) = (f64::from(q.eta), f64::from(q.k));
     let film = root([(film_ior - 1.0) * (film_ior + 1.0) + c * c, 0.0]);
     let behind = root([(eta - 1.0) * (eta + 1.0) - k * k + c * c, 2.0 * eta * k]);

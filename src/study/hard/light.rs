@@ -156,7 +156,8 @@ fn least_cosine(geometry: &Geometry, settings: &Settings, pixel: u32, direction:
 
 /// The worst pixel of a sphere that reflects all of a map of one colour.
 fn colored_furnace(stage: &mut Stage, texels: [u32; 2], color: [f32; 3]) -> Result<f64, StudyError> {
-    let light = stage.environment("furnace.exr", texels, |_, _| color)?;
+    // Files of one name would be one file to the cache.
+    let light = stage.environment(&format!("furnace-{}.exr", texels[0]), texels, |_, _| color)?;
     let mut document = small_document(ModelSource::Sphere, light, 16, 4);
     document.materials[0].fresnel = crate::optics::fresnel::Fresnel::None;
     Ok(worst_pixel(&stage.film(&document)?, color))

@@ -13,7 +13,7 @@ use glossmith::optics::albedo::{albedo_table, rough_albedo_table};
 use glossmith::optics::curve::{CUSTOM_INTERVALS, Curve, custom_table};
 use glossmith::optics::fresnel::Fresnel;
 use glossmith::optics::lobe::{Horizon, Lobe};
-use glossmith::optics::material::{COATS_BASE, COMPENSATES, MATCHED_NODES, Material, NO_TEXTURE};
+use glossmith::optics::material::{COATS_BASE, COMPENSATES, MATCHED_NODES, Material, NO_TEXTURE, OVER_AZIMUTH};
 use glossmith::optics::random::Sequence;
 use glossmith::optics::real::Scalar;
 use glossmith::optics::scattering::scattering_table;
@@ -150,7 +150,6 @@ pub static SCENE: LazyLock<Scene> = LazyLock::new(|| {
         material.alpha_cutoff = -1.0;
     }
     for (number, material) in materials.iter_mut().enumerate() {
-        material.has_rough_tables = u32::from(number % 4 == 3);
         if number % 3 == 1 {
             let matched: Vec<_> = (0..MATCHED_NODES).map(|node| (node as f32 / 16.0).powf(0.7)).collect();
             material.roughness_table = append_table(&mut tables, &matched);
@@ -162,23 +161,37 @@ pub static SCENE: LazyLock<Scene> = LazyLock::new(|| {
         if material.roughness.min(material.transmission_roughness) < 1e-3 {
             material.anisotropy = 0.0;
         }
+        material.has_rough_tables = match number % 4 {
+            3 => 1,
+            2 if material.anisotropy != 0.0 => OVER_AZIMUTH,
+            _ => 0,
+        };
         let coat = Material {
             metalness: 0.0,
             ior: material.coat_ior,
             roughness: material.coat_roughness,
             reflecting_ior: material.coat_ior,
+            anisotropy: material.coat_anisotropy,
+            has_rough_tables: if material.coat_anisotropy == 0.0 {
+                0
+            } else {
+                OVER_AZIMUTH
+            },
             ..*material
         };
         let coat_table = albedo_table(&coat.cast(), &tables, ALBEDO_SAMPLES, false);
         material.coat_table = append_table(&mut tables, &coat_table);
-        let albedo_table = if number % 4 == 3 {
-            rough_albedo_table
-        } else {
-            albedo_table
-        };
         let albedo = [false, true].map(|is_inside| {
-            let table = albedo_table(&material.cast(), &tables, ALBEDO_SAMPLES, is_inside);
-            append_table(&mut tables, &table)
+            let of = material.cast();
+            if number % 4 != 3 {
+                let table = albedo_table(&of, &tables, ALBEDO_SAMPLES, is_inside);
+                return append_table(&mut tables, &table);
+            }
+            let [plain, film] =
+                [false, true].map(|is_film| rough_albedo_table(&of, &tables, ALBEDO_SAMPLES, is_inside, is_film));
+            let start = append_table(&mut tables, &plain);
+            append_table(&mut tables, &film);
+            start
         });
         [material.albedo_table, material.inner_albedo_table] = albedo;
         if Lobe::ALL[material.lobe as usize].traits().loses_light && number % 3 > 0 {

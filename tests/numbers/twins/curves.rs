@@ -75,10 +75,10 @@ fn fresnel_factors_agree() {
     let (share, shares) = (Output::Number(0.01), Output::Vector(0.01));
     let mut all = Case::new(
         "fresnel",
-        "model metal_f0 metalness edge_tint tint metal_tint weight ior eta k has_film film_weight film_ior film_path cosine \
+        "model metal_f0 metalness edge_tint tint metal_tint weight ior eta k coat has_film film_weight film_ior film_behind film_path cosine \
          behind",
         "let terms = FresnelTerms(model, metal_f0, metalness, edge_tint, tint, metal_tint, weight, ior, eta, k, \
-         has_film == 1u, FilmTerms(film_weight, film_ior, film_path));",
+         coat, has_film == 1u, FilmTerms(film_weight, film_ior, film_behind, film_path));",
         twin!(|row| {
             let terms = FresnelTerms {
                 model: Fresnel::ALL[row.bits() as usize],
@@ -91,10 +91,12 @@ fn fresnel_factors_agree() {
                 ior: row.number(),
                 eta: row.vector(),
                 k: row.vector(),
+                coat: row.number(),
                 has_film: row.bits() == 1,
                 film: FilmTerms {
                     weight: row.number(),
                     ior: row.number(),
+                    behind: row.number(),
                     path: row.vector(),
                 },
             };
@@ -124,9 +126,11 @@ fn fresnel_factors_agree() {
                 ior(rng),
                 eta,
                 k,
+                rng.range(1.0, 2.0),
                 has_film,
                 rng.unit(),
                 rng.range(0.8, 3.0),
+                rng.range(0.7, 2.5),
                 Value::Vector([(); 3].map(|()| 14.0 * rng.unit())),
                 Value::Unit(rng.unit()),
                 Value::Unit(rng.unit())

@@ -177,13 +177,13 @@ fn materials_agree() {
                 "rough_albedo",
                 "material cosine roughness",
                 "let integrals = rough_albedo_lookup(material_at(material).albedo_table, cosine, roughness); \
-                 let albedo = rough_albedo(material_fresnel_terms(material_at(material), false), integrals);",
+                 let albedo = rough_albedo(material_fresnel_terms(material_at(material), false), integrals, vec4f(0.0));",
                 twin!(|row| {
                     let material: Material<T> = SCENE.material(row.bits());
                     let [cosine, roughness] = row.numbers();
                     let integrals = rough_albedo_lookup(&SCENE.tables, material.albedo_table, cosine, roughness);
                     row.put_numbers(integrals);
-                    row.put_vector(rough_albedo(&material.fresnel_terms(false), integrals));
+                    row.put_vector(rough_albedo(&material.fresnel_terms(false), integrals, None));
                 }),
             )
             .number("integrals.x", 0.1)

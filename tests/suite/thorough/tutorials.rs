@@ -1,10 +1,8 @@
-//! Tutorials of the book, followed step by step: each gesture in the window through its accessibility tree, each command
-//! by the program. A page that names what is not there any more fails.
+//! Tutorials of the book: each command is run by the program. A page that names what is not there any more fails.
 
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use glossmith::app::actions::Action;
 use glossmith::document::Denoise;
 use glossmith::render::shown::Shown;
 use serde_json::Value;
@@ -13,7 +11,6 @@ use super::cli_support::{Workplace, write_hdr};
 use super::docs::{pages, text_of};
 use super::docs_commands::{arguments, commands};
 use super::gltf_builder::{glb, square};
-use super::ui::{editor, request, see};
 
 fn tutorial(name: &str) -> String {
     text_of(&Path::new("docs/tutorials").join(name))
@@ -198,7 +195,4 @@ fn the_display_menu_has_what_the_pages_list() {
     for (_, label, _) in Shown::ALL.iter().filter(|(shown, ..)| *shown != Shown::Picture) {
         assert!(page.contains(label), "docs/reference/window.md lacks {label}");
     }
-    let mut harness = editor();
-    request(&mut harness, Action::Show(Shown::Error));
-    see(&mut harness, "the map", |harness| harness.state().is_settled());
 }

@@ -1,0 +1,329 @@
+//! Stacks of layers one setting away from the defaults, against closed forms: energy, indices under coats and films,
+//! stretched lobes, weights that come in, and light that the bounce limit cuts.
+
+use glossmith::document::{MaterialSettings, PARAMETERS, assign};
+use glossmith::render::{EngineChoice, Precision};
+use glossmith::scene::ModelSource;
+use glossmith::scene::environment::EnvironmentSource;
+use glossmith::study::evaluate::{Albedo, Evaluator};
+
+use super::renders::{document, render};
+use super::support::Random;
+
+const BLACK: &[&str] = &["base.metalness=0", "base.color=0,0,0", "specular.fresnel=dielectric"];
+const GLASS: &[&str] = &[
+    "base.metalness=0",
+    "base.color=1,1,1",
+    "specular.fresnel=dielectric",
+    "transmission.weight=1",
+];
+
+fn material(parts: &[&[&str]]) -> MaterialSettings {
+    let mut material = MaterialSettings::default();
+    for assignment in parts.concat() {
+        assign(&mut material, assignment).unwrap();
+    }
+    material
+}
+
+fn albedo(material: &MaterialSettings, cosine: f64, count: u32) -> Albedo {
+    let evaluator = Evaluator::open(material, EngineChoice::Cpu, Precision::Single).unwrap();
+    evaluator.albedo(cosine, count, 1).unwrap()
+}
+
+fn sums(albedo: &Albedo) -> [f64; 3] {
+    std::array::from_fn(|channel| albedo.reflected[channel] + albedo.transmitted[channel])
+}
+
+/// Fresnel's equations between two media of which one may be complex (Born and Wolf, section 1.5); the cosine is that of the
+/// first.
+fn reflectance(cosine: f64, before: f64, [eta, k]: [f64; 2]) -> f64 {
+    glossmith::optics::fresnel::fresnel_conductor(cosine, eta / before, k / before)
+}
+
+/// Rough glass never makes light, whatever the tint and weight of what it reflects.
+#[test]
+fn no_glass_makes_light() {
+    let reflections = [
+        "specular.color=0,0,0",
+        "specular.color=0,1,0",
+        "specular.weight=0",
+        "specular.weight=0.4",
+    ];
+    for lobe in ["ggx", "ggx-2018", "geometric"] {
+        for (roughness, ior) in [(0.3, 1.5), (0.6, 2.5), (1.0, 1.5), (1.0, 4.0)] {
+            for reflection in reflections {
+                let own = [
+                    format!("specular.lobe={lobe}"),
+                    format!("specular.roughness={roughness}"),
+                    format!("specular.ior={ior}"),
+                    reflection.to_owned(),
+                ];
+                let own: Vec<&str> = own.iter().map(String::as_str).collect();
+                let glass = material(&[GLASS, &own]);
+                for cosine in [1.0, 0.5, 0.1, -0.8, -0.3] {
+                    let found = sums(&albedo(&glass, cosine, 1 << 14));
+                    assert!(found.iter().all(|&sum| sum < 1.006), "{own:?} at {cosine}: {found:?}");
+                    if reflection.starts_with("specular.weight") || cosine < 0.0 {
+                        assert!(found.iter().all(|&sum| sum > 0.99), "{own:?} at {cosine}: {found:?}");
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// A tint is the reflection's alone: what goes through black reflections is (1 − F), as under white ones.
+#[test]
+fn a_tint_leaves_what_goes_through() {
+    let white: &[&str] = &["base.metalness=0", "base.color=1,1,1", "specular.fresnel=dielectric"];
+    let through = |below: &[&str], color: &str| {
+        let own = ["specular.roughness=0", &format!("specular.color={color}")];
+        let found = albedo(&material(&[below, &own]), 0.1, 1 << 14);
+        [found.reflected[1], found.transmitted[1]]
+    };
+    let [_, plain] = through(GLASS, "1,1,1");
+    let [reflected, transmitted] = through(GLASS, "0,0,0");
+    assert!(reflected < 1e-6 && (transmitted - plain).abs() < 4e-3, "{transmitted} for {plain}");
+    let [under_black, _] = through(white, "0,0,0");
+    assert!((under_black - plain).abs() < 4e-3, "{under_black} for {plain}");
+}
+
+/// A clear solid of index 1 bends nothing, but a film or a coat over it reflects: the rest goes straight on.
+#[test]
+fn a_film_on_index_1_keeps_all_light() {
+    let film: &[&str] = &[
+        "specular.ior=1",
+        "thin_film.weight=1",
+        "thin_film.thickness=0.45",
+        "thin_film.ior=1.33",
+    ];
+    let coat: &[&str] = &["specular.ior=1", "coat.weight=1", "coat.ior=1.5", "coat.roughness=0.2"];
+    for lobe in ["ggx", "ggx-2018", "ggx-ndf", "blinn-phong", "geometric"] {
+        for (cover, roughness) in [(film, 0.0), (film, 0.3), (film, 0.8), (coat, 0.3)] {
+            let own = [
+                format!("specular.lobe={lobe}"),
+                format!("specular.roughness={roughness}"),
+            ];
+            let solid = material(&[GLASS, cover, &[&own[0], &own[1]]]);
+            for cosine in [1.0, 0.5, 0.2, 0.1] {
+                let found = sums(&albedo(&solid, cosine, 1 << 14));
+                let least = if lobe == "blinn-phong" { 0.9 } else { 0.99 };
+                assert!(
+                    found.iter().all(|&sum| sum > least && sum < 1.006),
+                    "{lobe} {roughness} at {cosine}: {found:?}"
+                );
+            }
+        }
+    }
+}
+
+/// Beyond the critical angle of a smooth reflection a rougher refraction still lets light through, and is drawn.
+#[test]
+fn extra_roughness_of_refraction_is_drawn_beyond_the_critical_angle() {
+    let frosted = material(&[
+        GLASS,
+        &[
+            "specular.lobe=ggx",
+            "specular.roughness=0.05",
+            "transmission.roughness=0.3",
+        ],
+    ]);
+    for (cosine, through) in [(-0.7, 0.1746), (-0.6, 0.0615), (-0.4, 0.0211)] {
+        let found = albedo(&frosted, cosine, 1 << 16).transmitted[1];
+        assert!((found - through).abs() < 2e-3, "at {cosine}: {found} for {through}");
+    }
+}
+
+/// Measured metals under a smooth coat are the exact stack of both interfaces.
+#[test]
+fn metals_under_a_coat_meet_its_index() {
+    const COAT: f64 = 1.5;
+    for metal in ["iron", "titanium", "gold", "copper", "aluminium", "platinum"] {
+        let coated = material(&[&[
+            "base.metalness=1",
+            "specular.lobe=ggx",
+            "specular.roughness=0",
+            "specular.fresnel=conductor",
+            &format!("specular.conductor={metal}"),
+            "coat.weight=1",
+            "coat.lobe=ggx",
+            "coat.roughness=0",
+            "coat.ior=1.5",
+        ]]);
+        for cosine in [1.0, 0.8, 0.5, 0.2] {
+            let found = albedo(&coated, cosine, 1 << 12).reflected;
+            let outer = reflectance(cosine, 1.0, [COAT, 0.0]);
+            let within = (1.0 - (1.0 - cosine * cosine) / (COAT * COAT)).sqrt();
+            for channel in 0..3 {
+                let index = [coated.eta[channel], coated.k[channel]].map(f64::from);
+                let inner = reflectance(within, COAT, index);
+                let exact = outer + (1.0 - outer).powi(2) * inner / (1.0 - outer * inner);
+                let found = found[channel];
+                assert!((found - exact).abs() < 0.01, "{metal} at {cosine}: {found} for {exact}");
+            }
+        }
+    }
+}
+
+/// A film under a coat meets the light that the coat has refracted (complex Airy sums, review of the layers, fault 7).
+#[test]
+fn films_under_a_coat_meet_its_angle() {
+    let filmed = material(&[
+        BLACK,
+        &[
+            "specular.lobe=ggx",
+            "specular.roughness=0",
+            "thin_film.weight=1",
+            "thin_film.thickness=0.5",
+            "thin_film.ior=1.33",
+            "coat.weight=1",
+            "coat.lobe=ggx",
+            "coat.roughness=0",
+            "coat.darkening=0",
+        ],
+    ]);
+    for (cosine, exact) in [(0.5, 0.103), (0.342, 0.187)] {
+        let [red, ..] = albedo(&filmed, cosine, 1 << 12).reflected;
+        assert!((red - exact).abs() < 0.015, "at {cosine}: {red} for {exact}");
+    }
+}
+
+/// The weight of the reflection is in the index of what is refracted too: 0 is not there, and does not bend.
+#[test]
+fn the_weight_in_the_index_holds_for_glass() {
+    for (weight, cosine, reflected) in [(0.3, 0.104528, 0.4932), (0.0, 0.1, 0.0), (0.0, 0.7, 0.0)] {
+        let glass = material(&[
+            GLASS,
+            &[
+                "specular.roughness=0",
+                "specular.weight_in_index=on",
+                &format!("specular.weight={weight}"),
+            ],
+        ]);
+        let found = albedo(&glass, cosine, 1 << 14);
+        assert!((found.reflected[1] - reflected).abs() < 2e-3, "{weight}: {found:?}");
+        assert!(
+            (found.transmitted[1] - (1.0 - reflected)).abs() < 2e-3,
+            "{weight}: {found:?}"
+        );
+    }
+    let film = material(&[
+        BLACK,
+        &[
+            "specular.roughness=0.1",
+            "specular.weight_in_index=on",
+            "specular.weight=0",
+            "thin_film.weight=1",
+            "thin_film.thickness=0.5",
+            "thin_film.ior=1.8",
+        ],
+    ]);
+    let found = albedo(&film, 1.0, 1 << 12).reflected[1];
+    assert!(
+        (found - 0.225).abs() < 4e-3,
+        "a film without an index below it: {found}"
+    );
+}
+
+/// Stretched lobes keep all light from every side: of a white metal, clear glass, and a white base under gloss.
+#[test]
+fn stretched_lobes_keep_all_light_at_every_azimuth() {
+    let metal: &[&str] = &["base.metalness=1", "specular.fresnel=none", "specular.lobe=ggx"];
+    let gloss: &[&str] = &[
+        "base.metalness=0",
+        "base.color=1,1,1",
+        "specular.fresnel=dielectric",
+        "specular.lobe=ggx",
+    ];
+    let cases = [
+        (metal, [0.3, 0.7, 1.0]),
+        (&[GLASS, &["specular.lobe=ggx"]].concat(), [0.3, 0.5, 1.0]),
+        (gloss, [0.3, 0.5, 0.8]),
+    ];
+    for (of, roughnesses) in cases {
+        for roughness in roughnesses {
+            for rotation in [0, 20, 45, 70, 90] {
+                let own = [
+                    format!("specular.roughness={roughness}"),
+                    "specular.anisotropy=0.9".to_owned(),
+                    format!("specular.rotation={rotation}"),
+                ];
+                let stretched = material(&[of, &own.each_ref().map(String::as_str)]);
+                for cosine in [0.9, 0.4, 0.15] {
+                    let [sum, ..] = sums(&albedo(&stretched, cosine, 1 << 14));
+                    assert!((sum - 1.0).abs() < 0.02, "{of:?} {own:?} at {cosine}: {sum}");
+                }
+            }
+        }
+    }
+}
+
+/// What comes in with a weight of a millionth changes nothing that is seen: on random stacks, for each weight.
+#[test]
+fn weights_come_in_without_a_jump() {
+    const WEIGHTS: [&str; 6] = [
+        "coat.weight",
+        "fuzz.weight",
+        "thin_film.weight",
+        "base.metalness",
+        "specular.weight",
+        "transmission.weight",
+    ];
+    let mut rng = Random::new(7);
+    for number in 0..12 {
+        let mut stack = MaterialSettings {
+            fresnel: glossmith::optics::fresnel::Fresnel::Dielectric,
+            specular_in_index: number % 2 == 0,
+            ..MaterialSettings::default()
+        };
+        for id in PARAMETERS.iter().map(|parameter| parameter.key) {
+            let is_drawn = ["roughness", "ior", "thickness", "darkening"]
+                .iter()
+                .any(|part| id.ends_with(part));
+            if is_drawn && id != "transmission.roughness" || WEIGHTS.contains(&id) {
+                let part = rng.unit();
+                let value = match id {
+                    _ if id.ends_with("ior") => 1.0 + part,
+                    _ if WEIGHTS.contains(&id) && part < 0.3 => 0.0,
+                    _ => part,
+                };
+                assign(&mut stack, &format!("{id}={value}")).unwrap();
+            }
+        }
+        for weight in WEIGHTS {
+            let [without, with] = ["0", "0.000001"].map(|value| {
+                let mut stack = stack.clone();
+                assign(&mut stack, &format!("{weight}={value}")).unwrap();
+                [1.0, 0.5, 0.15].map(|cosine| sums(&albedo(&stack, cosine, 1 << 14)))
+            });
+            for (without, with) in without.as_flattened().iter().zip(with.as_flattened()) {
+                // Both draw the same numbers; what is drawn by another table may differ by its noise.
+                assert!(
+                    (without - with).abs() < 0.012,
+                    "stack {number}, {weight}: {without}, then {with}"
+                );
+            }
+        }
+    }
+}
+
+/// What the bounce limit cuts is told in any scene, by what the last surface would have scattered on.
+#[test]
+fn cut_light_is_told_without_refraction() {
+    let matt = |albedo: f64| {
+        let own = [
+            "base.metalness=0",
+            "specular.weight=0",
+            &format!("base.color={albedo},{albedo},{albedo}"),
+        ];
+        let mut document = document(ModelSource::default(), EnvironmentSource::default(), &own);
+        document.render.bounces = 1;
+        render(EngineChoice::Cpu, &document).cut_share()
+    };
+    let [white, black] = [1.0, 0.0].map(matt);
+    assert!(
+        white > 1e-3 && black == 0.0,
+        "cut {white} of white and {black} of black"
+    );
+}
