@@ -12,8 +12,8 @@ use glossmith::store::{load_document, load_material, opened};
 
 /// Kinds of files.
 #[allow(dead_code)]
-pub const FORMATS: [&str; 15] = [
-    "glb", "obj", "ply", "stl", "zip", "hdr", "exr", "png", "jpg", "tif", "ktx2", "dds", "material", "project", "mtlx",
+pub const FORMATS: [&str; 16] = [
+    "glb", "fbx", "obj", "ply", "stl", "zip", "hdr", "exr", "png", "jpg", "tif", "ktx2", "dds", "material", "project", "mtlx",
 ];
 
 /// Formats of pictures, which are textures as well as environments.
@@ -73,7 +73,7 @@ fn path(format: &str) -> PathBuf {
 
 fn try_path(format: &str, path: &Path) {
     match format {
-        "glb" | "obj" | "ply" | "stl" | "zip" => {
+        "glb" | "fbx" | "obj" | "ply" | "stl" | "zip" => {
             if let Ok(model) = load(&ModelSource::File(path.to_owned())) {
                 let geometry = Geometry::build(&model, true);
                 let hit = geometry.intersect([0.3, 0.2, -2.0], [0.01, 0.02, 1.0], f32::INFINITY);

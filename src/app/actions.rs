@@ -159,7 +159,7 @@ const fn key(key: Key) -> Option<KeyboardShortcut> {
 commands! {
     New, File, "New", "Starts again, with the default model, light and material.", keys(CTRL, Key::N), 0;
     Open, File, "Open…", "Opens a project, a material, a model or an environment.", keys(CTRL, Key::O), 0;
-    OpenModel, File, "Open model…", "Opens a model (.glb, .gltf, .obj, .ply, .stl, .zip).", None, 0;
+    OpenModel, File, "Open model…", "Opens a model (.glb, .gltf, .fbx, .obj, .ply, .stl, .zip).", None, 0;
     OpenEnvironment, File, "Open environment…", "Opens an environment map (.hdr, .exr, .ktx2, .dds, .png, .jpg, .tif, .webp).", keys(CTRL_SHIFT, Key::O), 0;
     OpenMaterial, File, "Open material…", "Opens a material (.json, .mtlx, or a file of another program that has the exact parameters) into the selected slot.", None, 0;
     OpenMeasured, File, "Open measured material…", "Opens a measured material (.binary of the MERL database) to match looks with.", None, 0;

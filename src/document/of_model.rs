@@ -12,8 +12,10 @@ use crate::optics::lobe::Lobe;
 use crate::scene::camera::{Projection, right_and_up};
 use crate::scene::{Fate, ImportReport, LIGHTS_MAX, LightKind, Model, ModelCamera, ModelLens, ModelLight};
 
-/// Diameter of the balls and discs that stand for lights of no size, bounding radii.
-const LIGHT_SIDE: f64 = 0.02;
+/// Diameter of the balls and discs that stand for lights of no size, over their distance from the middle of the model or its
+/// bounding radius: so small that a disc a tenth of a radius from a surface lights it within 0.02 %. A smaller one far away would be
+/// lost in the rounding of its place.
+const LIGHT_SIDE: f64 = 0.002;
 /// The farthest that a light is put from the model, bounding radii.
 const FARTHEST: f64 = 900.0;
 /// The field of view that an orthographic camera gets, degrees: its place follows from it.
@@ -120,7 +122,7 @@ fn area_light(light: &ModelLight, model: &Model) -> AreaLight {
     let mut lamp = AreaLight { shape, ..white };
     aim(&mut lamp, nearer, forward);
     put_cone(&mut lamp, cone);
-    put_intensity(&mut lamp, intensity);
+    put_intensity(&mut lamp, intensity, LIGHT_SIDE * nearer.length().max(1.0));
     lamp
 }
 
@@ -147,11 +149,11 @@ fn put_cone(lamp: &mut AreaLight, [inner, outer]: [f64; 2]) {
 }
 
 /// Gives a lamp the radiance of an intensity straight on, per squared bounding radius; a size at which its strength is one
-/// that it takes.
-fn put_intensity(lamp: &mut AreaLight, intensity: f64) {
+/// that it takes, and no less than `least`.
+fn put_intensity(lamp: &mut AreaLight, intensity: f64, least: f64) {
     let brightest = *range::STRENGTH.end();
     let needed = (intensity / (0.25 * PI * brightest)).sqrt();
-    let side = LIGHT_SIDE.max(needed).min(*range::AREA_LENGTH.end());
+    let side = least.max(needed).min(*range::AREA_LENGTH.end());
     (lamp.width, lamp.height) = (side, side);
     lamp.strength = (intensity / (0.25 * PI * side * side)).min(brightest) as f32;
 }

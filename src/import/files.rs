@@ -85,8 +85,8 @@ enum Place {
 #[derive(Debug)]
 struct Archive {
     zip: Mutex<ZipArchive<BufReader<File>>>,
-    /// The names of its files that can be written as text, in its order.
-    names: Vec<String>,
+    /// The names of its files that can be written as text, with slashes, and their numbers in it.
+    names: Vec<(String, usize)>,
     /// The first of them by each spelling that finds it: as it is; in lower case; without its folder, in lower case.
     found: [HashMap<String, usize>; 3],
 }
@@ -94,9 +94,12 @@ struct Archive {
 impl Archive {
     fn open(path: &Path) -> io::Result<Self> {
         let zip = ZipArchive::new(BufReader::new(limits::open(path)?))?;
-        let names: Vec<String> = zip.file_names().flatten().map(|name| name.into_owned()).collect();
+        // Old tools of Windows write backslashes.
+        let names = zip.file_names().enumerate();
+        let names = names.filter_map(|(number, name)| Some((name.ok()?.replace('\\', "/"), number)));
+        let names: Vec<(String, usize)> = names.collect();
         let mut found: [HashMap<String, usize>; 3] = Default::default();
-        for (place, name) in names.iter().enumerate() {
+        for (place, (name, _)) in names.iter().enumerate() {
             for (by, spelling) in found.iter_mut().zip(spellings(name)) {
                 by.entry(spelling).or_insert(place);
             }
@@ -109,9 +112,9 @@ impl Archive {
     fn read(&self, wanted: &str, import: &Import) -> io::Result<Vec<u8>> {
         let mut spelled = self.found.iter().zip(spellings(wanted));
         let place = spelled.find_map(|(by, spelling)| by.get(&spelling));
-        let name = &self.names[*place.ok_or(ErrorKind::NotFound)?];
+        let (_, number) = self.names[*place.ok_or(ErrorKind::NotFound)?];
         let mut zip = lock(&self.zip);
-        let file = zip.by_name(name)?;
+        let file = zip.by_index(number)?;
         let size = file.size();
         if size > PACKED_FROM && size / PACKED_MOST > file.compressed_size() {
             let why = format!(
@@ -167,7 +170,7 @@ impl Files {
                 .filter(|entry| entry.path().is_file())
                 .filter_map(|entry| entry.file_name().into_string().ok())
                 .collect(),
-            Place::Archive(archive, _) => archive.names.clone(),
+            Place::Archive(archive, _) => archive.names.iter().map(|(name, _)| name.clone()).collect(),
         };
         names.sort();
         Ok(names)
@@ -205,8 +208,8 @@ impl Files {
         let found = if wanted.is_file() {
             wanted
         } else {
-            same_but_for_case(&wanted)
-                .or_else(|| same_but_for_case(&folder.join(base)))
+            same_but_for_case(folder, name)
+                .or_else(|| same_but_for_case(folder, base))
                 .or_else(|| self.given.iter().find(|given| is_called(given, base)).cloned())
                 .unwrap_or(wanted)
         };
@@ -247,10 +250,15 @@ fn normal_path(path: &str) -> String {
     parts.join("/")
 }
 
-/// A file of the same folder whose name differs in upper and lower case only.
-fn same_but_for_case(path: &Path) -> Option<PathBuf> {
-    let name = path.file_name()?.to_str()?;
-    let entries = fs::read_dir(path.parent()?).ok()?;
-    let mut paths = entries.flatten().map(|entry| entry.path());
-    paths.find(|path| is_called(path, name) && path.is_file())
+/// A file below a folder whose name, or those of the folders in between, differ in upper and lower case only.
+fn same_but_for_case(folder: &Path, name: &str) -> Option<PathBuf> {
+    let found = name.split('/').try_fold(folder.to_owned(), |at, part| {
+        let exact = at.join(part);
+        if exact.exists() {
+            return Some(exact);
+        }
+        let mut paths = fs::read_dir(at).ok()?.flatten().map(|entry| entry.path());
+        paths.find(|path| is_called(path, part))
+    });
+    found.filter(|path| path.is_file())
 }

@@ -3,21 +3,26 @@
 
 use glossmith_engine::{optics, panics, parallel, scene};
 
+mod assembly;
 pub mod endings;
 pub mod environment;
+mod fbx;
 mod file_parameter;
 mod files;
 mod gltf;
 pub mod light_profile;
 pub mod limits;
+mod maps;
 mod model;
 mod model_error;
 mod obj;
 pub mod picture;
 mod ply;
+mod polygon;
 pub mod remembered;
 mod stl;
 
+pub use fbx::FBX_PARAMETERS;
 pub use file_parameter::{FileParameter, Goes};
 pub use gltf::{GLTF_PARAMETERS, Widths, gltf_from_widths, kept_keys, widths_from_gltf};
 pub use limits::{Budget, OverBudget};

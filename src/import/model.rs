@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{gltf, obj, ply, stl};
+use super::{fbx, gltf, obj, ply, stl};
 use crate::endings::{MODELS, ending, has_ending};
 use crate::files::{Files, Import};
 use crate::limits::Reach;
@@ -104,12 +104,13 @@ pub fn holds_model(folder: &Path) -> bool {
 /// Loads the model among files: of the first format that there is, the file that is nearest to the top.
 fn load_inside(path: &Path, files: Files, options: &ModelOptions) -> Result<Model, ModelError> {
     let read = |error| unreadable(path, error);
-    let names = files.names().map_err(read)?;
+    let mut names = files.names().map_err(read)?;
+    // What macOS puts beside files on foreign disks and into archives.
+    names.retain(|name| {
+        !name.starts_with("__MACOSX/") && !name.rsplit('/').next().is_some_and(|last| last.starts_with("._"))
+    });
     let of_format = |wanted: &&str| {
-        let mut found: Vec<&String> = names
-            .iter()
-            .filter(|name| ending(Path::new(name)) == *wanted && !name.starts_with("__MACOSX/"))
-            .collect();
+        let mut found: Vec<&String> = names.iter().filter(|name| ending(Path::new(name)) == *wanted).collect();
         found.sort_by_key(|name| name.matches('/').count());
         found.into_iter().next().cloned()
     };
@@ -130,8 +131,9 @@ fn load_inside(path: &Path, files: Files, options: &ModelOptions) -> Result<Mode
 /// Loads the contents of a file by its ending.
 fn load_file(path: &Path, files: Files, bytes: Vec<u8>, options: &ModelOptions) -> Result<Model, ModelError> {
     let model = match ending(path).as_str() {
+        "fbx" => fbx::load(path, &files, &bytes, options)?,
         "obj" => obj::load(path, &files, &bytes, options)?,
-        "ply" => ply::load(path, &bytes, &files.import.loading)?,
+        "ply" => ply::load(path, &files, &bytes, options)?,
         "stl" => stl::load(path, &bytes, &files.import.loading)?,
         // glTF files are recognised by their first bytes, not by name.
         _ => gltf::load(path, files, bytes, options)?,

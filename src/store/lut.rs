@@ -9,8 +9,8 @@ use super::{FileError, file};
 use crate::import::remembered::Remembered;
 use crate::optics::tone::Lut;
 
-/// Most entries along a side, of a cube and of curves.
-const SIZES: [usize; 2] = [129, 65536];
+/// Most entries along a side, of curves and of a cube.
+const SIZES: [usize; 2] = [65536, 129];
 /// Tables that are remembered.
 const REMEMBERED: usize = 4;
 
@@ -22,48 +22,60 @@ pub fn load(path: &Path) -> Result<Lut, FileError> {
 }
 
 fn parse(text: &str) -> Result<Lut, String> {
-    let mut size = None;
-    let mut domain = [[0.0; 3], [1.0; 3]];
+    // Of curves and of a cube: codes go through the curves first (DaVinci Resolve).
+    let (mut sizes, mut domains) = ([None; 2], [[[0.0; 3], [1.0; 3]]; 2]);
     let mut entries: Vec<[f32; 3]> = Vec::new();
     for (number, line) in (1..).zip(text.lines()) {
         let line = line.trim().trim_start_matches('\u{feff}');
         let (word, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
         let wrong = || format!("line {number} is \"{}\"", line.chars().take(40).collect::<String>());
+        let kind = usize::from(word.starts_with("LUT_3D"));
         match word {
             "" | "TITLE" => {}
             comment if comment.starts_with('#') => {}
-            "LUT_1D_SIZE" | "LUT_3D_SIZE" if size.is_some() => {
-                return Err("it holds two tables; save curves and cube apart".to_owned());
-            }
             "LUT_1D_SIZE" | "LUT_3D_SIZE" => {
-                let is_one_dimensional = word == "LUT_1D_SIZE";
-                let most = SIZES[usize::from(is_one_dimensional)];
-                let count = rest.trim().parse().ok().filter(|count| (2..=most).contains(count));
-                size = Some((count.ok_or_else(wrong)?, is_one_dimensional));
+                let count = rest.trim().parse().ok();
+                let count = count.filter(|count| (2..=SIZES[kind]).contains(count));
+                if sizes[kind].replace(count.ok_or_else(wrong)?).is_some() {
+                    return Err("it holds two tables of one kind; save them apart".to_owned());
+                }
             }
-            "DOMAIN_MIN" => domain[0] = numbers(rest).ok_or_else(wrong)?,
-            "DOMAIN_MAX" => domain[1] = numbers(rest).ok_or_else(wrong)?,
+            "DOMAIN_MIN" | "DOMAIN_MAX" => {
+                let end = numbers(rest).ok_or_else(wrong)?;
+                domains
+                    .iter_mut()
+                    .for_each(|domain| domain[usize::from(word == "DOMAIN_MAX")] = end);
+            }
             "LUT_1D_INPUT_RANGE" | "LUT_3D_INPUT_RANGE" => {
                 let [low, high] = numbers(rest).ok_or_else(wrong)?;
-                domain = [[low; 3], [high; 3]];
+                domains[kind] = [[low; 3], [high; 3]];
             }
             _ => entries.push(numbers(line).ok_or_else(wrong)?),
         }
     }
-    let (size, is_one_dimensional) = size.ok_or("it does not say its size (LUT_3D_SIZE)")?;
-    let wanted = if is_one_dimensional { size } else { size.pow(3) };
-    if entries.len() != wanted {
+    let counts = [sizes[0].unwrap_or(0), sizes[1].map_or(0, |size| size.pow(3))];
+    let wanted = counts[0] + counts[1];
+    if wanted > 0 && entries.len() != wanted {
         return Err(format!("it has {} of {wanted} entries", entries.len()));
     }
-    if (0..3).any(|i| domain[0][i] >= domain[1][i]) {
-        return Err("its domain is empty".to_owned());
+    let of_cube = entries.split_off(counts[0].min(entries.len()));
+    let mut lut = None;
+    for (kind, entries) in [entries, of_cube].into_iter().enumerate() {
+        let (Some(size), domain) = (sizes[kind], domains[kind]) else {
+            continue;
+        };
+        if (0..3).any(|i| domain[0][i] >= domain[1][i]) {
+            return Err("its domain is empty".to_owned());
+        }
+        lut = Some(Lut {
+            before: lut.map(Box::new),
+            size,
+            is_one_dimensional: kind == 0,
+            domain,
+            entries,
+        });
     }
-    Ok(Lut {
-        size,
-        is_one_dimensional,
-        domain,
-        entries,
-    })
+    lut.ok_or_else(|| "it does not say its size (LUT_3D_SIZE)".to_owned())
 }
 
 /// Finite numbers with blanks between them.

@@ -8,7 +8,7 @@ use clap::{Arg, ArgAction, Command, CommandFactory};
 use glossmith::cli::Arguments;
 use glossmith::document::effect::EFFECTS;
 use glossmith::document::{Kind, PARAMETERS, Parameter, SETTINGS, TEXTURE_PARAMETERS, parameter};
-use glossmith::import::{FileParameter, GLTF_PARAMETERS, Goes, MTL_PARAMETERS};
+use glossmith::import::{FBX_PARAMETERS, FileParameter, GLTF_PARAMETERS, Goes, MTL_PARAMETERS};
 use glossmith::optics::curve::Curve;
 use glossmith::optics::fresnel::Fresnel;
 use glossmith::optics::lobe::Lobe;
@@ -323,6 +323,7 @@ fn block(name: &str) -> String {
         "formats" => formats(),
         "kinds of files" => file_kinds(),
         "parameters of glTF" => file_parameters(GLTF_PARAMETERS),
+        "maps of FBX" => file_parameters(FBX_PARAMETERS),
         "keywords of MTL" => file_parameters(MTL_PARAMETERS),
         "results" => super::docs_results::table_of_results(),
         "a path" => path_explained(),

@@ -2,13 +2,15 @@
 
 use std::path::{Path, PathBuf};
 
+use exr::meta::attribute::EnvironmentMap;
 use exr::prelude::{
     AnyChannel, AnyChannels, Compression, Encoding, FlatSamples, Image, ImageAttributes, IntegerBounds, Layer,
-    LayerAttributes, LineOrder, SmallVec, Vec2, WritableImage, f16,
+    LayerAttributes, LineOrder, SmallVec, SpecificChannels, Vec2, WritableImage, f16,
 };
 use glossmith::import::environment::EnvironmentError;
 use glossmith::import::environment::load;
-use glossmith::scene::environment::{Environment, EnvironmentSource};
+use glossmith::optics::vector::vec3;
+use glossmith::scene::environment::{Environment, EnvironmentSource, environment_radiance};
 use image::codecs::hdr::HdrEncoder;
 use tempfile::TempDir;
 
@@ -152,6 +154,80 @@ fn hdr_files_are_read() {
     );
 }
 
+/// What Radiance's programs say before the pixels, and editors make of it.
+#[test]
+fn hdr_headers_are_heeded() {
+    let folder = TempDir::new().unwrap();
+    let format = "FORMAT=32-bit_rle_rgbe";
+    for (name, header, expected) in [
+        (
+            "line ends",
+            format!("#?RADIANCE\r\n{format}\r\n\r\n-Y 1 +X 2\r\n"),
+            [1.0, 0.5, 0.25],
+        ),
+        ("no signature", format!("{format}\n\n-Y 1 +X 2\n"), [1.0, 0.5, 0.25]),
+        (
+            "corrections",
+            format!("#?RADIANCE\n{format}\nCOLORCORR= 2 1 0.5\nCOLORCORR=1 0.5 1\n\n-Y 1 +X 2\n"),
+            [0.5, 1.0, 0.5],
+        ),
+        (
+            // By the matrix of ITU-R BT.2087.
+            "primaries",
+            format!("#?RADIANCE\n{format}\nPRIMARIES=.708 .292 .17 .797 .131 .046 .3127 .329\n\n-Y 1 +X 2\n"),
+            [1.3485, 0.4398, 0.2111],
+        ),
+    ] {
+        let bytes = [header.as_bytes(), &[128, 64, 32, 129].repeat(2)].concat();
+        let environment = load_file(&write_bytes(&folder, "a.hdr", &bytes)).unwrap();
+        for (found, expected) in std::iter::zip(environment.texels[1], expected) {
+            assert!(
+                (found - expected).abs() < 1e-3,
+                "{name}: {found} in place of {expected}"
+            );
+        }
+    }
+}
+
+/// Which half of which face lies where (OpenEXR, `CubeMap::pixelPosition`).
+#[test]
+fn exr_cubes_have_their_own_orientation() {
+    let folder = TempDir::new().unwrap();
+    let (path, side) = (folder.path().join("cube.exr"), 32);
+    let attributes = LayerAttributes {
+        environment_map: Some(EnvironmentMap::Cube),
+        ..LayerAttributes::default()
+    };
+    // The face's number, and 1 in its right and in its lower half.
+    let half = |place: usize| if place % side < side / 2 { 0.0_f32 } else { 1.0 };
+    let color = |Vec2(x, y): Vec2<usize>| ((y / side) as f32, half(x), half(y));
+    let layer = Layer::new(
+        (side, 6 * side),
+        attributes,
+        Encoding::UNCOMPRESSED,
+        SpecificChannels::rgb(color),
+    );
+    Image::from_layer(layer).write().to_file(&path).unwrap();
+    let environment = load_file(&path).unwrap();
+    let lower_right: [[f64; 3]; 6] = [
+        [1.0, -0.4, 0.4],
+        [-1.0, -0.4, -0.4],
+        [0.4, 1.0, -0.4],
+        [0.4, -1.0, 0.4],
+        [-0.4, -0.4, 1.0],
+        [0.4, -0.4, -1.0],
+    ];
+    for (face, [x, y, z]) in lower_right.into_iter().enumerate() {
+        let found = environment_radiance(&environment, vec3(x, y, z).normalize()).to_f32();
+        for (found, expected) in std::iter::zip(found, [face as f32, 1.0, 1.0]) {
+            assert!(
+                (found - expected).abs() < 1e-3,
+                "face {face}: {found} in place of {expected}"
+            );
+        }
+    }
+}
+
 #[test]
 fn exr_files_are_read_in_every_supported_compression_and_number_type() {
     let folder = TempDir::new().unwrap();
@@ -199,6 +275,8 @@ fn exr_channels_are_chosen() {
         zip,
     );
     assert_shows(&load_file(&with_alpha).unwrap(), 1.0, [0, 1, 2]);
+    let lower = exr_file(&folder, "l.exr", &[("r", 0), ("g", 1), ("b", 2), ("a", 7)], "half", zip);
+    assert_shows(&load_file(&lower).unwrap(), 1.0, [0, 1, 2]);
     let luminance = exr_file(&folder, "b.exr", &[("Y", 3)], "float", zip);
     assert_shows(&load_file(&luminance).unwrap(), 1.0, [3, 3, 3]);
     let prefixed = [
@@ -381,9 +459,9 @@ fn colours_of_wider_spaces_are_converted() {
         if name == "plain.exr" {
             exr_file(&folder, name, &RGB, "float", Compression::Uncompressed);
         }
-        glossmith::import::picture::mean_of_file(&path, &glossmith::import::Budget::of_import())
-            .expect("loads")
-            .linear
+        let budget = glossmith::import::Budget::of_import();
+        let texture = glossmith::import::picture::read_texture(&path, true, 4096, &budget);
+        texture.expect("loads").rgba8
     });
-    assert!(plain != wide, "{plain:?}");
+    assert!(plain != wide);
 }

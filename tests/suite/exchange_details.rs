@@ -5,13 +5,14 @@ use glossmith::import::{gltf_from_widths, load};
 use glossmith::optics::fresnel::Fresnel;
 use glossmith::optics::lobe::Lobe;
 use glossmith::scene::ModelSource;
-use glossmith::scene::texture::TextureTarget;
+use glossmith::scene::texture::{TextureChannel, TextureTarget, UserTexture};
 use glossmith::store::exchange::{ReadOptions, read};
 use glossmith::store::{load_material, save_document, save_material};
 use serde_json::Value as Json;
 
 use crate::cli_support::Workplace;
 use crate::gltf_builder::Folder;
+use crate::gltf_meaning::shining_by_vertices;
 use crate::textures::all_at_once;
 
 /// What a format writes of a material.
@@ -145,6 +146,25 @@ fn what_a_material_lacks_is_not_reported() {
         assert!(!has(&of_metal, word), "{word}: {of_metal:?}");
     }
     assert!(has(&entries(&glass()), "refraction"));
+}
+
+/// The format multiplies no emission by them: they stand on an unlit material.
+#[test]
+fn colours_of_vertices_that_shine_travel_in_gltf() {
+    let folder = Folder::new();
+    let place = Workplace::new();
+    save_document(&place.path("scene.json"), &shining_by_vertices(&folder)).unwrap();
+    let run = place.done("convert scene.json scene.glb");
+    assert!(!run.stderr.contains("vertex colours"), "{}", run.stderr);
+    let model = load(&ModelSource::File(place.path("scene.glb"))).unwrap();
+    let slot = &model.slots[0];
+    assert!(
+        slot.is_unlit && slot.has_vertex_colors && !model.mesh.colors.is_empty(),
+        "{slot:?}"
+    );
+    assert_eq!(slot.color("emission.color"), [1.0; 3]);
+    let run = place.done("convert scene.glb back.json");
+    assert!(!run.stderr.contains("changed since"), "{}", run.stderr);
 }
 
 #[test]
@@ -328,7 +348,8 @@ fn graphs_of_materialx_are_followed_through_their_outputs_and_interfaces() {
         ("nodegraph=\"g\" output=\"a\"", [0.25, 0.5, 0.0]),
         ("nodegraph=\"g\" output=\"b\"", [0.5; 3]),
         ("nodegraph=\"g\"", [0.25, 0.5, 0.0]),
-        ("nodename=\"p\" output=\"outcolor\"", [0.5, 0.2, 1.0]),
+        // A texture of its own, which multiplies white.
+        ("nodename=\"p\" output=\"outcolor\"", [1.0; 3]),
         ("nodename=\"p\" output=\"outa\"", [0.4; 3]),
         ("nodename=\"i\"", [0.5, 0.8, 0.0]),
     ];
@@ -356,4 +377,311 @@ fn brackets_in_strings_and_dictionaries_of_usd_open_no_shader() {
         (material.name.as_str(), material.roughness, material.base_color),
         ("A", 0.25, [1.0, 0.5, 0.25])
     );
+}
+
+/// A file whose first material has this base colour and says these words; the surface is `S` of MaterialX, or whatever the file has.
+fn reads_as(place: &Workplace, name: &str, text: &str, expected: [f32; 3], words: &str) {
+    place.write(name, text.as_bytes());
+    let options = ReadOptions {
+        lobe: ImportLobe::Ggx,
+        ..ReadOptions::default()
+    };
+    let subject = read(&place.path(name), options).unwrap_or_else(|error| panic!("{text}: {error}"));
+    let (found, told) = (subject.materials[0].base_color, format!("{:?}", subject.losses[0]));
+    let apart = |(found, expected): (f32, f32)| (found - expected).abs();
+    let worst = found.into_iter().zip(expected).map(apart).fold(0.0, f32::max);
+    assert!(worst < 2e-4, "{text}: {found:?}, not {expected:?}");
+    assert_eq!(
+        told.contains(words),
+        !words.is_empty() || told == "[]",
+        "{text}: {told}"
+    );
+}
+
+/// Values by the primaries of the spaces' specifications, adapted by Bradford's transform.
+#[test]
+fn colour_spaces_of_the_standard_are_those_of_document_graph_and_input() {
+    let place = Workplace::new();
+    let spaces = [
+        ("acescg", [0.478831, 0.288029, 0.182302]),
+        ("lin_ap1", [0.478831, 0.288029, 0.182302]),
+        ("lin_ap1_scene", [0.478831, 0.288029, 0.182302]),
+        ("lin_ap0", [0.590924, 0.281976, 0.181627]),
+        ("lin_rec2020", [0.473334, 0.28838, 0.186312]),
+        ("lin_displayp3", [0.422494, 0.295794, 0.188209]),
+        ("srgb_displayp3", [0.146281, 0.070731, 0.02799]),
+        ("lin_adobergb", [0.439836, 0.3, 0.195707]),
+        ("srgb_texture", [0.132868, 0.073239, 0.033105]),
+        ("g18_rec709", [0.19218, 0.114503, 0.055189]),
+        ("g22_rec709", [0.133209, 0.07074, 0.028991]),
+        ("gamma22", [0.133209, 0.07074, 0.028991]),
+        ("rec709_display", [0.110903, 0.055602, 0.021012]),
+        ("g22_ap1", [0.180728, 0.063044, 0.021105]),
+        ("lin_rec709", [0.4, 0.3, 0.2]),
+        ("none", [0.4, 0.3, 0.2]),
+        ("acme_log", [0.4, 0.3, 0.2]),
+    ];
+    for (space, expected) in spaces {
+        let named = format!("colorspace=\"{space}\"");
+        let words = if space == "acme_log" { space } else { "" };
+        for [document, graph, input] in [
+            [&named[..], "", ""],
+            ["", &named, ""],
+            ["colorspace=\"acescg\"", "", &named],
+        ] {
+            let text = format!(
+                "<materialx {document}><nodegraph name=\"g\" {graph}><constant name=\"c\" type=\"color3\"><input name=\"value\" \
+                 type=\"color3\" value=\"0.4, 0.3, 0.2\" {input}/></constant><output name=\"o\" nodename=\"c\"/></nodegraph>{}</materialx>",
+                surface(0, "nodegraph=\"g\"")
+            );
+            reads_as(&place, "a.mtlx", &text, expected, words);
+        }
+    }
+}
+
+#[test]
+fn documents_of_materialx_are_read_as_they_are_meant() {
+    let place = Workplace::new();
+    let constant = |name: &str, value: &str| {
+        format!(
+            "<constant name=\"{name}\" type=\"color3\"><input name=\"value\" type=\"color3\" value=\"{value}\"/></constant>"
+        )
+    };
+    let graph = format!(
+        "<nodegraph name=\"g\">{}<output name=\"o\" nodename=\"k\"/></nodegraph>",
+        constant("k", "0, 1, 0")
+    );
+    let shared = format!(
+        "{}{}{graph}<input name=\"top\" type=\"color3\" value=\"1, 0.25, 0\"/>",
+        constant("a", "0.1, 0.2, 0.3"),
+        constant("b", "0, 0, 1")
+    );
+    let choice = |kind: &str, inputs: &str| {
+        let all = format!("{inputs}<input name=\"in1\" nodename=\"a\"/><input name=\"in2\" nodename=\"b\"/>");
+        format!("<{kind} name=\"n\" type=\"color3\">{all}</{kind}>")
+    };
+    let values =
+        |a: f32, b: f32| format!("<input name=\"value1\" value=\"{a}\"/><input name=\"value2\" value=\"{b}\"/>");
+    let (first, second) = ([0.1, 0.2, 0.3], [0.0, 0.0, 1.0]);
+    let cases = [
+        ("value=\"1, 0, 0\" nodename=\"b\"", String::new(), second, ""),
+        ("value=\"1, 0, 0\" nodename=\"b\" nodegraph=\"g\" output=\"o\"", String::new(), [0.0, 1.0, 0.0], ""),
+        ("nodename=\"a\" channels=\"bgr\"", String::new(), [0.3, 0.2, 0.1], ""),
+        ("nodename=\"a\" channels=\"g\"", String::new(), [0.2; 3], ""),
+        ("interfacename=\"top\"", String::new(), [1.0, 0.25, 0.0], ""),
+        ("interfacename=\"nowhere\"", String::new(), [0.8; 3], "interfacename"),
+        ("value=\"red\"", String::new(), [0.8; 3], "red is no number"),
+        ("nodename=\"n\"", choice("ifgreater", &values(2.0, 1.0)), first, ""),
+        ("nodename=\"n\"", choice("ifgreater", &values(1.0, 1.0)), second, ""),
+        ("nodename=\"n\"", choice("ifgreatereq", &values(1.0, 1.0)), first, ""),
+        ("nodename=\"n\"", choice("ifequal", &values(1.0, 2.0)), second, ""),
+        ("nodename=\"n\"", choice("switch", "<input name=\"which\" type=\"integer\" value=\"1\"/>"), second, ""),
+        // A node of the document's own kind, given one input, with the other by default.
+        (
+            "nodename=\"n\"",
+            "<nodedef name=\"ND\" node=\"mine\"><input name=\"x\" type=\"color3\" value=\"1, 1, 1\"/><input name=\"y\" \
+             type=\"color3\" value=\"0.5, 0.25, 0\"/></nodedef><nodegraph name=\"i\" nodedef=\"ND\"><add name=\"s\"><input \
+             name=\"in1\" interfacename=\"x\"/><input name=\"in2\" interfacename=\"y\"/></add><output name=\"out\" \
+             nodename=\"s\"/></nodegraph><mine name=\"n\"><input name=\"x\" type=\"color3\" nodename=\"a\"/></mine>"
+                .to_owned(),
+            [0.6, 0.45, 0.3],
+            "",
+        ),
+    ];
+    for (connection, node, expected, words) in cases {
+        let text = format!("<materialx>{shared}{node}{}</materialx>", surface(0, connection));
+        reads_as(&place, "a.mtlx", &text, expected, words);
+    }
+    // A material of a kind of its own.
+    let graph = surface(0, "interfacename=\"paint\"").replace("s0", "s");
+    let text = format!(
+        "<materialx><nodedef name=\"ND\" node=\"mine\"><input name=\"paint\" type=\"color3\" value=\"0, 0.5, 0\"/></nodedef>\
+         <nodegraph name=\"i\" nodedef=\"ND\">{graph}<surfacematerial name=\"m\" type=\"material\"><input name=\"surfaceshader\" \
+         nodename=\"s\"/></surfacematerial><output name=\"out\" type=\"material\" nodename=\"m\"/></nodegraph>\
+         <mine name=\"A\" type=\"material\"/></materialx>"
+    );
+    reads_as(&place, "a.mtlx", &text, [0.0, 0.5, 0.0], "");
+    for (unit, thickness, words) in [
+        ("micron", 0.25, ""),
+        ("nanometer", 250.0, ""),
+        ("parsec", 250.0, "parsec"),
+    ] {
+        let film = format!(
+            "name=\"thin_film_thickness\" type=\"float\" value=\"{thickness}\" unittype=\"distance\" unit=\"{unit}\""
+        );
+        let text = format!(
+            "<materialx>{}</materialx>",
+            surface(0, "value=\"1, 1, 1\"").replace("name=\"base\" type=\"float\" value=\"1\"", &film)
+        );
+        reads_as(&place, "a.mtlx", &text, [1.0; 3], words);
+        let subject = read(&place.path("a.mtlx"), ReadOptions::default()).unwrap();
+        assert!((subject.materials[0].film_thickness - 0.25).abs() < 1e-6, "{unit}");
+    }
+}
+
+#[test]
+fn materials_of_usd_are_read_by_way_of_their_connections() {
+    let place = Workplace::new();
+    image::RgbImage::from_pixel(2, 2, image::Rgb([128, 64, 255]))
+        .save(place.path("t.png"))
+        .unwrap();
+    let preview =
+        |inputs: &str| format!("def Shader \"S\" {{\n uniform token info:id = \"UsdPreviewSurface\"\n{inputs}\n}}\n");
+    let texture = |inputs: &str, output: &str| {
+        let connected = preview(&format!(
+            "color3f inputs:diffuseColor.connect = </M/T.outputs:{output}>"
+        ));
+        format!("def Shader \"T\"\n{{\nuniform token info:id = \"UsdUVTexture\"\n{inputs}\n}}\n{connected}")
+    };
+    let to_preview = "token outputs:surface.connect = </M/S.outputs:surface>\n";
+    let to_mtlx = "token outputs:mtlx:surface.connect = </M/S.outputs:out>\n";
+    let file = "asset inputs:file = @./t.png@\n";
+    let mtlx = |id: &str, input: &str| {
+        format!(
+            "def Shader \"S\" {{\n uniform token info:id = \"ND_{id}_surfaceshader\"\n{input} = (0.4, 0.3, 0.2)\n}}\n"
+        )
+    };
+    let (red, linear) = ([0.8, 0.0, 0.0], [0.21586, 0.051269, 1.0]);
+    let raw = "token inputs:sourceColorSpace = \"raw\"\n";
+    let cases = [
+        (
+            to_preview,
+            preview(
+                "# color3f inputs:diffuseColor = (0, 1, 0)\n color3f inputs:diffuseColor = (0.8, 0, 0) (doc = \"}\"); int inputs:x",
+            ),
+            red,
+            "",
+        ),
+        (
+            "color3f inputs:paint = (0.8, 0, 0)\n",
+            preview("color3f inputs:diffuseColor.connect = </M.inputs:paint>"),
+            red,
+            "",
+        ),
+        (
+            to_preview,
+            format!(
+                "variantSet \"look\" = {{\n\"a\" {{\n{}}}\n\"b\" {{\n}}\n}}\n",
+                preview("color3f inputs:diffuseColor = (0.8, 0, 0)")
+            ),
+            red,
+            "",
+        ),
+        (
+            to_mtlx,
+            mtlx("UsdPreviewSurface", "color3f inputs:diffuseColor"),
+            [0.4, 0.3, 0.2],
+            "",
+        ),
+        (
+            to_mtlx,
+            mtlx("standard_surface", "float inputs:base = 1; color3f inputs:base_color"),
+            [0.4, 0.3, 0.2],
+            "",
+        ),
+        (to_preview, texture(file, "rgb"), linear, ""),
+        (
+            to_preview,
+            texture(&format!("{file}{raw}"), "rgb"),
+            [0.50196, 0.25098, 1.0],
+            "",
+        ),
+        (to_preview, texture(&format!("{file}{raw}"), "g"), [0.25098; 3], ""),
+        (
+            to_preview,
+            texture(
+                &format!("{file}{raw}float4 inputs:scale = (0.5, 1, 1, 1)\nfloat4 inputs:bias = (0.1, 0, 0, 0)"),
+                "rgb",
+            ),
+            [0.35098, 0.25098, 1.0],
+            "",
+        ),
+        (
+            to_preview,
+            texture(
+                "asset inputs:file = @./none.png@\nfloat4 inputs:fallback = (0.2, 0.4, 0.6, 1)",
+                "rgb",
+            ),
+            [0.2, 0.4, 0.6],
+            "none.png",
+        ),
+        (
+            to_preview,
+            preview("color3f inputs:diffuseColor.connect = </M/Gone.outputs:rgb>"),
+            [0.18; 3],
+            "not there",
+        ),
+    ];
+    for (outputs, shaders, expected, words) in cases {
+        let text = format!(
+            "#usda 1.0\n(\n defaultPrim = \"M\"\n)\n\"\"\"a }} word\"\"\"\ndef Material \"M\"\n{{\n{outputs}{shaders}}}\n"
+        );
+        reads_as(&place, "a.usda", &text, expected, words);
+    }
+}
+
+/// Textures of a material go beside the document and come back from there, with the exact parameters and without.
+#[test]
+fn textures_of_a_material_travel_with_materialx() {
+    let place = Workplace::new();
+    let picture = image::RgbImage::from_fn(4, 4, |x, y| image::Rgb([60 * x as u8, 60 * y as u8, 200]));
+    picture.save(place.path("t.png")).unwrap();
+    std::fs::create_dir(place.path("out")).unwrap();
+    let mut material = MaterialSettings {
+        base_color: [0.5, 0.25, 1.0],
+        roughness: 0.5,
+        normal_strength: 0.5,
+        ..glass()
+    };
+    material.transmission_weight = 0.0;
+    let placed = UserTexture {
+        scale: 2.0,
+        stretch: 1.5,
+        offset: [0.25, -0.5],
+        ..UserTexture::of(place.path("t.png"))
+    };
+    let green = UserTexture {
+        channel: TextureChannel::Green,
+        ..UserTexture::of(place.path("t.png"))
+    };
+    let textures = [
+        (TextureTarget::BaseColor, placed.clone()),
+        (TextureTarget::Roughness, green),
+        (TextureTarget::Normal, placed),
+    ];
+    for (target, texture) in &textures {
+        material.user_textures.set(*target, Some(texture.clone()));
+        material.textures[*target] = true;
+    }
+    save_material(&place.path("a.json"), &material).unwrap();
+    for format in ["materialx", "standard-surface"] {
+        let run = place.done(&format!("convert a.json out/a.mtlx --to {format} --report -"));
+        assert!(run.stdout.contains("texture of Base colour"), "{}", run.stdout);
+        for is_plain in [false, true] {
+            let options = ReadOptions {
+                lobe: ImportLobe::Ggx,
+                is_plain,
+                ..ReadOptions::default()
+            };
+            let subject = read(&place.path("out/a.mtlx"), options).unwrap();
+            let (back, losses) = (&subject.materials[0], &subject.losses[0]);
+            assert!(losses.is_empty(), "{format}: {losses:?}");
+            assert_eq!(
+                (back.base_color, back.roughness, back.normal_strength),
+                ([0.5, 0.25, 1.0], 0.5, 0.5)
+            );
+            for (target, texture) in &textures {
+                let found = back.user_textures.get(*target).expect("is there");
+                assert_eq!(found.file, place.path("out/a_t.png"));
+                assert_eq!(
+                    (found.scale, found.stretch, found.offset),
+                    (texture.scale, texture.stretch, texture.offset)
+                );
+                assert_eq!(
+                    (found.channel, found.is_srgb(*target)),
+                    (texture.channel, target.is_color())
+                );
+            }
+        }
+    }
 }

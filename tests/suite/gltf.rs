@@ -7,7 +7,7 @@ use glossmith::scene::texture::TextureTarget;
 use glossmith::scene::{AlphaMode, Fate, Wrap};
 use serde_json::{Value, json};
 
-use super::gltf_builder::{Buffer, Folder, SQUARE, assert_mirrored_tangents, mirrored_squares, png, square};
+use super::gltf_builder::{Buffer, Folder, SQUARE, assert_mirrored_tangents, glb, mirrored_squares, png, square};
 
 #[test]
 fn a_square_is_read_as_it_is() {
@@ -266,6 +266,70 @@ fn materials_and_textures_become_slots() {
         ("two texels", 2, 1)
     );
     assert_eq!(texture.rgba8, [10, 20, 30, 255, 10, 20, 30, 128]);
+}
+
+/// A byte order mark, NULs after the JSON, chunks of other kinds, bytes after the buffer.
+#[test]
+fn containers_are_read_as_programs_fill_them() {
+    let folder = Folder::new();
+    let (buffer, document) = square();
+    let whole = glb(&document, &buffer.bytes);
+    let json = 20 + u32::from_le_bytes(whole[12..16].try_into().unwrap()) as usize;
+    let mut chunk = 4_u32.to_le_bytes().to_vec();
+    chunk.extend(b"XTRA1234");
+    // The text with NULs for its blanks at the end, and the other chunk before or after the bytes.
+    let filled = |bytes: &[u8]| {
+        let mut text = document.to_string().into_bytes();
+        text.extend(bytes);
+        text
+    };
+    let packed = |text: &[u8], rest: &[&[u8]]| {
+        let rest = rest.concat();
+        let numbers = [2, (20 + text.len() + rest.len()) as u32, text.len() as u32].map(u32::to_le_bytes);
+        [&b"glTF"[..], &numbers.concat()[..], b"JSON", text, &rest].concat()
+    };
+    let bytes = &whole[json..];
+    for (name, contents) in [
+        ("nul", packed(&filled(&[0; 3]), &[bytes])),
+        ("before", packed(&filled(b""), &[&chunk, bytes])),
+        ("after", packed(&filled(b" "), &[bytes, &chunk])),
+        ("long", glb(&document, &[&buffer.bytes[..], &[0; 64]].concat())),
+        (
+            "mark",
+            packed(&[&b"\xef\xbb\xbf"[..], &filled(b"")[..]].concat(), &[bytes]),
+        ),
+    ] {
+        let model = folder.load(&format!("{name}.glb"), &contents).expect(name);
+        assert!(
+            model.mesh.triangles.len() == 2 && model.report.of(Fate::Missing).next().is_none(),
+            "{name}"
+        );
+    }
+}
+
+/// Data URIs in both forms, with escapes; names whose case differs, of folders too.
+#[test]
+fn names_and_data_of_uris_are_read() {
+    let folder = Folder::new();
+    fs::create_dir(folder.path("Textures")).unwrap();
+    fs::write(folder.path("Textures/A b.PNG"), png()).unwrap();
+    let escaped: String = png().iter().map(|byte| format!("%{byte:02x}")).collect();
+    let base_64 =
+        "iVBORw0KGgoAAAANSUhEUgAAAAkAAAAJCAIAAABv85FHAAAAFElEQVR4nGNsaGhgwAGYcEkMEzkAgOcBkj3eIxkAAAAASUVORK5CYII%3D";
+    for uri in [
+        format!("data:image/png,{escaped}"),
+        format!("data:image/png;base64,{base_64}"),
+        "textures/a%20B.png".to_owned(),
+        "./TEXTURES\\A b.PNG".to_owned(),
+    ] {
+        let (buffer, mut document) = square();
+        document["images"] = json!([{"uri": uri}]);
+        document["textures"] = json!([{"source": 0}]);
+        document["materials"] = json!([{"emissiveTexture": {"index": 0}}]);
+        document["meshes"][0]["primitives"][0]["material"] = json!(0);
+        let model = folder.load_glb(&document, &buffer).expect("loads");
+        assert_eq!(model.textures.len(), 1, "{uri}: {:?}", model.report);
+    }
 }
 
 #[test]

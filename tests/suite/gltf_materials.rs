@@ -38,7 +38,7 @@ fn material_extensions_reach_the_slots() {
                 "clearcoatNormalTexture": {"index": 0, "scale": 0.5},
             },
             "KHR_materials_anisotropy": {"anisotropyStrength": 0.75, "anisotropyRotation": 0.5},
-            "KHR_materials_ior": {"ior": 6.0},
+            "KHR_materials_ior": {"ior": 0.5},
         }}),
     );
     let slot = &model.slots[0];
@@ -48,7 +48,7 @@ fn material_extensions_reach_the_slots() {
     );
     assert_eq!(
         (slot.number("specular.rotation"), slot.number("specular.ior")),
-        (0.5_f32.to_degrees(), 4.0)
+        (0.5_f32.to_degrees(), 1.0)
     );
     has_widths(&materials_of(&model, ImportLobe::Ggx)[0], 0.5, 0.75);
     assert!(
@@ -57,7 +57,7 @@ fn material_extensions_reach_the_slots() {
     );
     assert!(slot.number("coat.roughness") == 1.0 && slot.texture(TextureTarget::CoatRoughness).is_some());
     assert!(slot.number("coat.normal_strength") == 0.5 && slot.texture(TextureTarget::CoatNormal).is_some());
-    says(&model, Fate::Approximated, "an index of refraction of 6, taken as 4");
+    says(&model, Fate::Approximated, "an index of refraction of 0.5, taken as 1");
     let material = &materials_of(&model, ImportLobe::Ggx)[0];
     assert_eq!(
         (material.specular_weight, material.specular_color),
@@ -72,7 +72,7 @@ fn material_extensions_reach_the_slots() {
             && !material.coat_on_base
     );
     assert_eq!(material.coat_darkening, 0.0);
-    assert_eq!((material.rotation_deg, material.ior), (0.5_f32.to_degrees(), 4.0));
+    assert_eq!((material.rotation_deg, material.ior), (0.5_f32.to_degrees(), 1.0));
 }
 
 /// Compares a material's widths with those that the extension defines: α = mix(roughness², 1, strength²) along the
@@ -113,6 +113,44 @@ fn a_stretched_highlight_has_the_widths_of_the_extension() {
         assert!((found / along - 1.0).abs() < 1e-4, "{found} in place of {along}");
         assert_eq!(material.anisotropy, 1.0);
         says(&model, Fate::Approximated, "stretched more than 19 : 1");
+    }
+}
+
+/// KHR_materials_ior: 0 is an infinite index, F = 1 everywhere, by which specular-glossiness is written.
+#[test]
+fn an_index_beyond_4_is_a_metal_of_the_specular_colour() {
+    for (ior, reflectance) in [(0.0, 1.0), (1000.0, (999.0_f32 / 1001.0).powi(2))] {
+        let model = slot_of(&json!({
+            "pbrMetallicRoughness": {"baseColorFactor": [0, 0, 0, 1], "metallicFactor": 0},
+            "extensions": {
+                "KHR_materials_ior": {"ior": ior},
+                "KHR_materials_specular": {"specularColorFactor": [0.5, 0.25, 0.5]},
+            },
+        }));
+        let slot = &model.slots[0];
+        let expected = [0.5, 0.25, 0.5].map(|factor| factor * reflectance);
+        let found = slot.color("base.color");
+        let is_near = found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-4);
+        assert!(
+            is_near && (slot.number("base.metalness") - 1.0).abs() < 1e-4,
+            "{slot:?}"
+        );
+        says(&model, Fate::Approximated, "above 4, as metalness");
+    }
+}
+
+/// The WebP of EXT_texture_webp stands before the format's own image; the others after it.
+#[test]
+fn a_webp_is_taken_before_its_fallback() {
+    for (extension, name) in [("EXT_texture_webp", "extension's"), ("KHR_texture_basisu", "own")] {
+        let (mut buffer, _) = square();
+        let picture = buffer.view(&png());
+        let attributes = json!({"POSITION": 0, "TEXCOORD_0": 2});
+        let mut document = buffer.document(json!([{"attributes": attributes, "indices": 3, "material": 0}]));
+        document["images"] = json!(["own", "extension's"].map(|name| json!({"name": name, "bufferView": picture})));
+        document["textures"] = json!([{"source": 0, "extensions": {extension: {"source": 1}}}]);
+        document["materials"] = json!([{"emissiveTexture": {"index": 0}}]);
+        assert_eq!(load_plain(&document, &buffer).textures[0].name, name);
     }
 }
 

@@ -17,7 +17,7 @@ use image::{DynamicImage, ImageBuffer, Rgb};
 use serde_json::{Value, json};
 
 /// A KTX2 file of levels as they are.
-fn ktx2(format: u32, [width, height, faces]: [u32; 3], levels: &[Vec<u8>]) -> Vec<u8> {
+pub(super) fn ktx2(format: u32, [width, height, faces]: [u32; 3], levels: &[Vec<u8>]) -> Vec<u8> {
     let mut bytes = b"\xabKTX 20\xbb\r\n\x1a\n".to_vec();
     let numbers = [format, 1, width, height, 0, 0, faces, levels.len() as u32, 0];
     bytes.extend(numbers.iter().flat_map(|number| number.to_le_bytes()));

@@ -70,6 +70,7 @@ fn a_cube_is_linear_between_its_entries() {
         [b, g * g, r]
     });
     let lut = Lut {
+        before: None,
         size,
         is_one_dimensional: false,
         domain: [[0.0; 3], [2.0; 3]],
@@ -84,6 +85,7 @@ fn a_cube_is_linear_between_its_entries() {
     );
     assert_eq!(lut.apply(vec3(9.0, -1.0, f32::NAN)).to_f32(), [0.0, 0.0, 1.0]);
     let curves = Lut {
+        before: None,
         size: 2,
         is_one_dimensional: true,
         domain: [[0.0; 3], [1.0; 3]],
@@ -107,6 +109,14 @@ fn tables_are_read_as_programs_write_them() {
         "0.5 0.5 0.5\n".repeat(8)
     );
     assert_eq!(read(&cube).expect("a cube").domain, [[0.0; 3], [4.0; 3]]);
+    // Curves that halve, then the negative as a cube: each with a range of its own.
+    let corner = |i: usize| format!("{} {} {}\n", 1 - i % 2, 1 - i / 2 % 2, 1 - i / 4);
+    let both = format!(
+        "LUT_1D_SIZE 2\nLUT_1D_INPUT_RANGE 0 2\nLUT_3D_SIZE 2\nLUT_3D_INPUT_RANGE 0 1\n0 0 0\n1 1 1\n{}",
+        (0..8).map(corner).collect::<String>()
+    );
+    let found = read(&both).expect("two tables").apply(vec3(0.5, 0.25, 2.0)).to_f32();
+    assert_eq!(found, [0.75, 0.875, 0.0]);
     for (text, words) in [
         ("", "does not say its size"),
         ("LUT_3D_SIZE 2\n0 0 0\n", "1 of 8 entries"),
@@ -114,7 +124,8 @@ fn tables_are_read_as_programs_write_them() {
         ("LUT_1D_SIZE 2\n0 0\n", "line 2"),
         ("LUT_1D_SIZE 2\n0 0 nan\n", "line 2"),
         ("LUT_1D_SIZE 2\nDOMAIN_MAX 0 0 0\n0 0 0\n0 0 0\n", "domain is empty"),
-        ("LUT_1D_SIZE 2\nLUT_3D_SIZE 2\n", "two tables"),
+        ("LUT_3D_SIZE 2\nLUT_3D_SIZE 2\n", "two tables"),
+        ("LUT_1D_SIZE 2\nLUT_3D_SIZE 2\n0 0 0\n1 1 1\n", "2 of 10 entries"),
     ] {
         let error = read(text).expect_err(text);
         assert!(error.contains(words), "{text}: {error}");

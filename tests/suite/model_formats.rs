@@ -1,4 +1,4 @@
-//! Models in other formats than glTF: OBJ with its materials, PLY, STL; folders and archives.
+//! Models in other formats than glTF: OBJ with its materials, FBX, PLY, STL; folders and archives.
 
 use super::gltf_builder::{Folder, glb, png, square};
 use super::gltf_extensions::says;
@@ -23,9 +23,9 @@ fn obj_files_come_with_their_materials() {
     std::fs::write(folder.path("wood.png"), png()).unwrap();
     let model = folder.load("plate.obj", OBJ.as_bytes()).expect("loads");
     assert_eq!((model.name.as_str(), model.mesh.triangles.len()), ("plate", 3));
-    assert_eq!(model.mesh.positions[2], DVec3::new(1.0, 1.0, 0.0));
     // v grows downwards here.
-    assert_eq!(model.mesh.uvs[0], Vec2::new(0.0, 1.0));
+    let first = model.mesh.positions.iter().position(|place| *place == DVec3::ZERO);
+    assert_eq!(model.mesh.uvs[first.expect("the first corner")], Vec2::new(0.0, 1.0));
     // It has none: triangles are flat.
     assert!(model.mesh.normals.iter().all(|normal| *normal == Vec3::ZERO));
     let [paint, bare] = &model.slots[..] else {
@@ -167,15 +167,9 @@ fn lines_of_an_obj_file_are_read_or_refused() {
         ("v 2 0 0", "v 2 0 1e999", Fate::Ignored, "a corner that is not finite"),
         (
             "f 2/1/1 5/2/1 6/3/1",
-            "f 2 5 6",
+            "f 2/1/1 5/2/1 6/3/1\nf",
             Fate::Ignored,
-            "texture coordinates that only some",
-        ),
-        (
-            "f 2/1/1 5/2/1 6/3/1",
-            "f 2 5 6",
-            Fate::Ignored,
-            "normals that only some",
+            "Empty face",
         ),
     ] {
         let model = load(from, to).expect(to);
@@ -185,19 +179,224 @@ fn lines_of_an_obj_file_are_read_or_refused() {
     for (from, to) in [
         ("v 2 0 0", "v 2 0 x"),
         ("v 2 0 0", "v 2 0"),
-        ("v 2 0 0", "v 2 0 0 0"),
-        ("v 2 0 0", "v 2 0 0 1 1"),
         ("vt 1 0", "vt 1 ?"),
         ("vn 0 0 1", "vn 0 0"),
-        ("5/2/1", "5/2/x"),
         ("5/2/1", "7/2/1"),
         ("5/2/1", "0/2/1"),
         ("5/2/1", "-9/2/1"),
-        ("f 2/1/1 5/2/1 6/3/1", "f"),
     ] {
         let error = load(from, to).expect_err(to).to_string();
-        let is_plain = error.contains("bad.obj: damaged: ") && error.ends_with("; export the model again");
+        let is_plain = error.contains("bad.obj: damaged: ")
+            && !error.contains("Failed to load")
+            && error.ends_with("; export the model again");
         assert!(is_plain && !error.contains('\n'), "{to}: {error}");
+    }
+}
+
+/// Area of a model in the plane z = 0, with its sign.
+fn area(model: &Model) -> f64 {
+    let mesh = &model.mesh;
+    let doubled = |[a, b, c]: [DVec3; 3]| (b - a).cross(c - a).z;
+    (0..mesh.triangles.len()).map(|i| doubled(mesh.corners(i)) / 2.0).sum()
+}
+
+/// What the dialects of the format have: each file with the area that it covers, and the normals at its start and end.
+#[test]
+fn dialects_of_obj_files_are_read() {
+    let folder = Folder::new();
+    let roof = "v -1 -1 -.5\nv 0 -1 0\nv 1 -1 -.5\nv -1 1 -.5\nv 0 1 0\nv 1 1 -.5\n";
+    let square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+    for (name, text, covered, middle) in [
+        // A fan from the first corner would reach outside.
+        (
+            "concave",
+            "v 0 0 0\nv 4 0 0\nv 4 3 0\nv 2 1 0\nv 0 3 0\nf 1 2 3 4 5\n".to_owned(),
+            8.0,
+            Vec3::ZERO,
+        ),
+        (
+            "carriage returns",
+            format!("{square}f 1 2 3 4\n").replace('\n', "\r"),
+            1.0,
+            Vec3::ZERO,
+        ),
+        ("smooth", format!("{roof}s 3\nf 1 2 5 4\nf 2 3 6 5\n"), 4.0, Vec3::Z),
+        (
+            "two groups",
+            format!("{roof}s 3\nf 1 2 5 4\ns 4\nf 2 3 6 5\n"),
+            4.0,
+            Vec3::NAN,
+        ),
+        (
+            "off",
+            format!("{roof}s 3\ns off\nf 1 2 5 4\nf 2 3 6 5\n"),
+            4.0,
+            Vec3::ZERO,
+        ),
+        (
+            "mixed",
+            format!("{roof}vt 0 0\nvn 0 0 1\nf 1/1 2/1 5/1\nf 2//1 3//1 6//1 5//1\nf 1 5 4\n"),
+            4.0,
+            Vec3::NAN,
+        ),
+    ] {
+        let model = folder.load("a.obj", text.as_bytes()).expect(name);
+        assert!((area(&model) - covered).abs() < 1e-9, "{name}: {}", area(&model));
+        let on_edge = |place: &DVec3| place.x == 0.0 && place.z == 0.0;
+        let mut edge = model
+            .mesh
+            .positions
+            .iter()
+            .zip(&model.mesh.normals)
+            .filter(|(place, _)| on_edge(place));
+        assert!(middle.is_nan() || edge.all(|(_, normal)| *normal == middle), "{name}");
+        let kinds = model
+            .mesh
+            .normals
+            .iter()
+            .map(|normal| normal.to_array().map(f32::to_bits));
+        let kinds = kinds.collect::<std::collections::HashSet<_>>().len();
+        assert!(!middle.is_nan() || kinds == 2, "{name}: {kinds}");
+    }
+}
+
+/// Libraries in the words of many exporters.
+#[test]
+fn dialects_of_libraries_are_read() {
+    let folder = Folder::new();
+    std::fs::write(folder.path("picture.png"), png()).unwrap();
+    std::fs::write(folder.path("other.mtl"), "newmtl other\nKd 1 0 0\n").unwrap();
+    let obj = "mtllib\tother.mtl m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl m\nf 1/1 2/2 3/3\n";
+    for (library, color, texture) in [
+        ("newmtl m\nkd 0.5 0.25 0\n", [0.5, 0.25, 0.0], false),
+        ("newmtl m\rKd 0.5 0.25 0\r", [0.5, 0.25, 0.0], false),
+        ("NEWMTL m\nKD 0.5\nMAP_KD C:\\export 2\\Picture.PNG\n", [0.5; 3], true),
+        ("newmtl m\nKd xyz 0.9505 1 1.089\n", [1.0; 3], false),
+        ("newmtl m\nKd 1 1 1\nmap_d picture.png\n", [1.0; 3], true),
+    ] {
+        std::fs::write(folder.path("m.mtl"), library).unwrap();
+        let model = folder.load("m.obj", obj.as_bytes()).expect("loads");
+        let [slot] = &model.slots[..] else {
+            panic!("{library}: one slot")
+        };
+        let apart = |i: usize| (slot.color("base.color")[i] - color[i]).abs();
+        assert!(
+            (0..3).all(|i| apart(i) < 1e-3),
+            "{library}: {:?}",
+            slot.color("base.color")
+        );
+        assert_eq!(slot.texture(TextureTarget::BaseColor).is_some(), texture, "{library}");
+        let is_mask = library.contains("map_d");
+        assert_eq!(slot.texture(TextureTarget::Opacity).is_some(), is_mask, "{library}");
+    }
+}
+
+/// A square metre in the ground, of centimetres and Z up, moved by a node and inside it, with Phong's red.
+const FBX: &str = r#"; FBX 7.4.0 project file
+FBXHeaderExtension:  {
+    FBXVersion: 7400
+}
+GlobalSettings:  {
+    Properties70:  {
+        P: "UpAxis", "int", "Integer", "",2
+        P: "UpAxisSign", "int", "Integer", "",1
+        P: "FrontAxis", "int", "Integer", "",1
+        P: "FrontAxisSign", "int", "Integer", "",-1
+        P: "CoordAxis", "int", "Integer", "",0
+        P: "CoordAxisSign", "int", "Integer", "",1
+        P: "UnitScaleFactor", "double", "Number", "",1
+    }
+}
+Objects:  {
+    Geometry: 10, "Geometry::Plate", "Mesh" {
+        Vertices: *12 {
+            a: 0,0,0,100,0,0,100,100,0,0,100,0
+        }
+        PolygonVertexIndex: *4 {
+            a: 0,1,2,-4
+        }
+        LayerElementMaterial: 0 {
+            MappingInformationType: "AllSame"
+            ReferenceInformationType: "IndexToDirect"
+            Materials: *1 {
+                a: 0
+            }
+        }
+        Layer: 0 {
+            LayerElement:  {
+                Type: "LayerElementMaterial"
+                TypedIndex: 0
+            }
+        }
+    }
+    Model: 20, "Model::Plate", "Mesh" {
+        Properties70:  {
+            P: "Lcl Translation", "Lcl Translation", "", "A",0,0,300
+            P: "GeometricTranslation", "Vector3D", "Vector", "",500,0,0
+        }
+    }
+    Model: 21, "Model::Other", "Mesh" {
+    }
+    Material: 30, "Material::Red", "" {
+        ShadingModel: "phong"
+        Properties70:  {
+            P: "DiffuseColor", "Color", "", "A",0.5,0.25,0
+            P: "SpecularColor", "Color", "", "A",1,1,1
+            P: "Shininess", "double", "Number", "",30
+            P: "Opacity", "double", "Number", "",0.75
+        }
+    }
+}
+Connections:  {
+    C: "OO",20,0
+    C: "OO",21,0
+    C: "OO",10,20
+    C: "OO",10,21
+    C: "OO",30,20
+    C: "OO",30,21
+}
+"#;
+
+#[test]
+fn fbx_files_come_in_metres_with_y_up() {
+    let folder = Folder::new();
+    let model = folder.load("plate.fbx", FBX.as_bytes()).expect("loads");
+    let names: Vec<&str> = model.objects.iter().map(|object| object.name.as_str()).collect();
+    assert_eq!((names, model.mesh.triangles.len()), (vec!["Plate", "Other"], 4));
+    let bound = |least: fn(DVec3, DVec3) -> DVec3| model.mesh.positions.iter().copied().reduce(least).unwrap();
+    assert!(
+        (bound(DVec3::min) - DVec3::new(0.0, 0.0, -1.0)).length() < 1e-9,
+        "{}",
+        bound(DVec3::min)
+    );
+    assert!(
+        (bound(DVec3::max) - DVec3::new(6.0, 3.0, 0.0)).length() < 1e-9,
+        "{}",
+        bound(DVec3::max)
+    );
+    assert!(
+        model
+            .mesh
+            .normals
+            .iter()
+            .all(|normal| (*normal - Vec3::Y).length() < 1e-6)
+    );
+    let [red] = &model.slots[..] else {
+        panic!("{:?}", model.slots)
+    };
+    let numbers = ["specular.roughness", "geometry.opacity", "base.metalness"].map(|key| red.number(key));
+    assert_eq!((red.color("base.color"), numbers), ([0.5, 0.25, 0.0], [0.5, 0.75, 0.0]));
+    says(&model, Fate::Approximated, "Phong");
+    for (contents, words) in [
+        (&FBX[..FBX.len() / 2], "plate.fbx"),
+        ("no FBX", "plate.fbx"),
+        ("", "no FBX file"),
+    ] {
+        let error = folder
+            .load("plate.fbx", contents.as_bytes())
+            .expect_err(words)
+            .to_string();
+        assert!(error.contains(words) && error.contains(';'), "{error}");
     }
 }
 
@@ -352,6 +551,133 @@ fn stl_files_may_be_text_or_bytes() {
     }
 }
 
+/// Text is known by what it contains; all its solids are read, and loops of more corners than three.
+#[test]
+fn text_of_stl_files_is_read_as_programs_write_it() {
+    let folder = Folder::new();
+    let corners = |places: &[&str]| -> String { places.iter().map(|place| format!("vertex {place}\n")).collect() };
+    let facet = |places: &[&str]| format!("facet normal 0 0 1\nouter loop\n{}endloop\nendfacet\n", corners(places));
+    let one = facet(&["0 0 0", "1 0 0", "0 1 0"]);
+    let solid = format!("solid a b\n{one}endsolid a b\n");
+    for (text, triangles) in [
+        (format!("{solid}{solid}"), 2),
+        (format!("solid\n{one}endsolid\n").replace('\n', "\r\n"), 1),
+        (format!("solid\tname\n{one}endsolid\n").replace('\n', "\r"), 1),
+        (format!("\u{feff}\n{solid}").to_uppercase(), 1),
+        (
+            format!("solid\n{}endsolid\n", facet(&["0 0 0", "2 0 0", "1 0.5 0", "0 2 0"])),
+            2,
+        ),
+    ] {
+        let model = folder.load("one.stl", text.as_bytes()).expect(&text);
+        assert!(
+            model.mesh.triangles.len() == triangles && model.report.is_clean(),
+            "{text}: {:?}",
+            model.report
+        );
+    }
+    let cut = folder.load(
+        "cut.stl",
+        format!("{solid}solid\n{}", &one[..one.len() - 17]).as_bytes(),
+    );
+    says(&cut.expect("loads"), Fate::Missing, "a facet has no end");
+    let error = folder
+        .load("cut.stl", b"solid\nfacet\nvertex 0 x 0\n")
+        .expect_err("refused")
+        .to_string();
+    assert!(error.contains("\"vertex 0 x 0\" is no corner"), "{error}");
+}
+
+/// What a PLY file has beside vertices with colours and convex faces: lengths of its mesh, the third corner's coordinates and
+/// colour, the area.
+#[test]
+fn parts_of_ply_files_are_read_under_all_their_names() {
+    let folder = Folder::new();
+    std::fs::write(folder.path("wood.png"), png()).unwrap();
+    let load = |vertices: &str, values: [&str; 6], faces: &str, rows: &str| {
+        let places = ["-1 -1 0", "1 -1 0", "1 1 0", "-1 1 0", "0 0 0", "0 0 0"];
+        let body: String = places
+            .iter()
+            .zip(values)
+            .map(|(place, value)| format!("{place} {value}\n"))
+            .collect();
+        let text = format!(
+            "ply\nformat ascii 1.0\ncomment TextureFile wood.png\nelement vertex 6\nproperty float x\nproperty float y\n\
+             property float z\n{vertices}element {faces}end_header\n{body}{rows}"
+        );
+        // A texture would hide colours.
+        let has_uvs = vertices.contains("float") || faces.contains("texcoord");
+        let text = if has_uvs {
+            text
+        } else {
+            text.replace("comment TextureFile wood.png\n", "")
+        };
+        folder.load("parts.ply", text.as_bytes()).expect("loads")
+    };
+    let list = "property list uchar int vertex_indices\n";
+    let area = |model: &Model| -> f64 {
+        let doubled = (0..model.mesh.triangles.len()).map(|triangle| {
+            let [a, b, c] = model.mesh.corners(triangle);
+            (b - a).cross(c - a).length()
+        });
+        0.5 * doubled.sum::<f64>()
+    };
+    let uvs = ["0 0", "1 0", "1 0.75", "0 1", "0 0", "0 0"];
+    for [u, v] in [["u", "v"], ["s", "t"], ["texture_u", "texture_v"]] {
+        let names = format!("property float {u}\nproperty float {v}\n");
+        let model = load(&names, uvs, &format!("face 1\n{list}"), "4 0 1 2 3\n");
+        assert_eq!(
+            (model.mesh.uvs[2], model.textures.len()),
+            (Vec2::new(1.0, 0.25), 1),
+            "{u}"
+        );
+        assert!(
+            model.slots[0].texture(TextureTarget::BaseColor).is_some() && model.report.is_clean(),
+            "{u}"
+        );
+    }
+    let wedges = format!("face 2\n{list}property list uchar float texcoord\n");
+    let model = load(
+        "",
+        [""; 6],
+        &wedges,
+        "3 0 1 2 6 0 0 1 0 1 0.75\n3 0 2 3 6 0.5 0 1 1 0 1\n",
+    );
+    let at = |triangle: usize, corner: usize| model.mesh.uvs[model.mesh.triangles[triangle][corner] as usize];
+    assert_eq!([at(0, 2), at(1, 0)], [Vec2::new(1.0, 0.25), Vec2::new(0.5, 1.0)]);
+    assert!((area(&model) - 4.0).abs() < 1e-9 && model.textures.len() == 1);
+    let colored = format!("face 2\n{list}property uchar red\nproperty uchar green\nproperty uchar blue\n");
+    let model = load("", [""; 6], &colored, "3 0 1 2 255 0 0\n3 0 2 3 0 255 0\n");
+    let color = |triangle: usize| model.mesh.colors[model.mesh.triangles[triangle][0] as usize];
+    assert_eq!([color(0), color(1)], [[1.0, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0, 1.0]]);
+    assert!(
+        model.slots[0].has_vertex_colors && model.report.is_clean(),
+        "{:?}",
+        model.report
+    );
+    // A dent at its fourth corner, which a fan from the first would fill.
+    let model = load("", [""; 6], &format!("face 1\n{list}"), "5 1 2 3 0 4\n");
+    assert!((area(&model) - 3.0).abs() < 1e-9, "{}", area(&model));
+    let strips = load(
+        "",
+        [""; 6],
+        "tristrips 1\nproperty list int int vertex_indices\n",
+        "8 0 1 3 2 -1 0 1 4\n",
+    );
+    assert_eq!((strips.mesh.triangles.len(), area(&strips)), (3, 5.0));
+    for triangle in 0..3 {
+        let [a, b, c] = strips.mesh.corners(triangle);
+        assert!((b - a).cross(c - a).z > 0.0, "{triangle}");
+    }
+    let other = load(
+        "property int quality\n",
+        ["7"; 6],
+        &format!("face 1\n{list}"),
+        "4 0 1 2 3\n",
+    );
+    says(&other, Fate::Ignored, "the property quality of each vertex");
+}
+
 #[test]
 fn folders_and_archives_are_searched_for_a_model() {
     let folder = Folder::new();
@@ -362,8 +688,9 @@ fn folders_and_archives_are_searched_for_a_model() {
     let files = [
         ("pack/readme.txt", b"Dear reader".as_slice()),
         ("pack/model/square.gltf", document.to_string().as_bytes()),
-        ("pack/data/square.bin", &buffer.bytes),
+        ("pack\\data\\square.bin", &buffer.bytes),
         ("__MACOSX/pack/model/._square.gltf", b"junk"),
+        ("._square.gltf", b"junk"),
     ]
     .map(|(name, bytes)| (name, bytes.to_vec()));
     for (name, bytes) in &files {

@@ -1,14 +1,21 @@
-//! Pictures as files: every format and every channel against the film that it was made of.
+//! Pictures as files: every format and every channel against the film that it was made of; and what pictures that are read
+//! say of their texels.
 
 use crate::cli_support::{Workplace, channels};
+use crate::gltf_builder::{Folder, square};
+use crate::gpu_pictures::ktx2;
 use crate::support::Random;
+use exr::prelude::WritableImage as _;
 use glossmith::document::{AreaLight, Background, Document, assign};
+use glossmith::import::{Budget, environment::load, picture::read_texture};
 use glossmith::job::film::{Film, Image};
 use glossmith::optics::tone::ToneCurve;
 use glossmith::render::output::{self, Layers};
 use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::ModelSource;
 use glossmith::scene::environment::EnvironmentSource;
+use image::ImageEncoder as _;
+use serde_json::json;
 use std::collections::HashMap;
 use std::path::Path;
 use std::time::Duration;
@@ -203,4 +210,141 @@ fn the_same_picture_is_the_same_file() {
     for _ in 0..12 {
         assert!(written() == first, "another file");
     }
+}
+
+const RED: [u8; 4] = [255, 0, 0, 255];
+const GREEN: [u8; 4] = [0, 255, 0, 255];
+const BLUE: [u8; 4] = [0, 0, 255, 255];
+const WHITE: [u8; 4] = [255; 4];
+
+/// Little-endian bytes.
+fn words(words: &[u32]) -> Vec<u8> {
+    words.iter().flat_map(|word| word.to_le_bytes()).collect()
+}
+
+/// Two by two texels that say a key of theirs.
+fn keyed(key_and_value: &[u8], texels: [[u8; 4]; 4]) -> Vec<u8> {
+    let mut file = ktx2(37, [2, 2, 1], &[texels.concat()]);
+    let values = [&words(&[key_and_value.len() as u32]), key_and_value].concat();
+    file.splice(56..64, words(&[file.len() as u32, values.len() as u32]));
+    file.extend(values);
+    file
+}
+
+/// A file of 32 bits that promises so many of opacity.
+fn tga(opacity_bits: u8, texels: [[u8; 4]; 4]) -> Vec<u8> {
+    let header = [0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 2, 0, 2, 0, 32, 0x20 | opacity_bits];
+    let texels = texels.map(|[r, g, b, a]| [b, g, r, a]);
+    [&header[..], texels.as_flattened()].concat()
+}
+
+/// A file whose extra sample is of this kind: 1 is opacity that multiplies the colours.
+fn tiff(extra: u32, texels: [[u8; 4]; 4]) -> Vec<u8> {
+    // Tag, type, count, value; 8 × 4 bits stand behind the directory, the texels behind them.
+    let tags = [
+        [256, 3, 1, 2],
+        [257, 3, 1, 2],
+        [258, 3, 4, 134],
+        [259, 3, 1, 1],
+        [262, 3, 1, 2],
+        [273, 4, 1, 142],
+        [277, 3, 1, 4],
+        [278, 3, 1, 2],
+        [279, 4, 1, 16],
+        [338, 3, 1, extra],
+    ];
+    let entry = |[tag, kind, count, value]: [u32; 4]| words(&[tag | kind << 16, count, value]);
+    let directory = tags.map(entry).concat();
+    let start = [b"II*\0\x08\0\0\0", &[10, 0][..], &directory, &[0; 4]].concat();
+    [&start, &[8, 0].repeat(4)[..], texels.as_flattened()].concat()
+}
+
+/// A photograph of a camera that was held upright: to be turned clockwise.
+fn photo(texels: [[u8; 4]; 4]) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let mut encoder = image::codecs::png::PngEncoder::new(&mut bytes);
+    let exif = b"II*\0\x08\0\0\0\x01\0\x12\x01\x03\0\x01\0\0\0\x06\0\0\0\0\0\0\0";
+    encoder.set_exif_metadata(exif.to_vec()).unwrap();
+    let color = image::ExtendedColorType::Rgba8;
+    encoder.write_image(texels.as_flattened(), 2, 2, color).unwrap();
+    bytes
+}
+
+/// Runs of 8 bits that leave the first texel out.
+fn bmp() -> Vec<u8> {
+    let runs = [1, 2, 1, 3, 0, 0, 0, 2, 1, 0, 1, 1, 0, 1];
+    let palette = [RED, GREEN, BLUE, WHITE].map(|[r, g, b, _]| [b, g, r, 0]);
+    let header = words(&[40, 2, 2, 1 | 8 << 16, 1, runs.len() as u32, 0, 0, 4, 4]);
+    let start = words(&[70 + runs.len() as u32, 0, 70]);
+    [b"BM", &start[..], &header, palette.as_flattened(), &runs].concat()
+}
+
+/// Light that a fifth of opacity multiplies, under names in lower case.
+fn exr(place: &Workplace) -> Vec<u8> {
+    use exr::prelude::{Encoding, Image, SpecificChannels, Vec2};
+    let texels = [RED, GREEN, BLUE, WHITE].map(|texel| texel.map(|code| f32::from(code) / 255.0 * 0.2));
+    let texel = |Vec2(x, y): Vec2<usize>| {
+        let [r, g, b, a] = texels[2 * y + x];
+        (r, g, b, a)
+    };
+    let channels = SpecificChannels::build()
+        .with_channel::<f32>("r")
+        .with_channel("g")
+        .with_channel("b")
+        .with_channel("a")
+        .with_pixel_fn(texel);
+    let path = place.path("written.exr");
+    let image = Image::from_encoded_channels((2, 2), Encoding::UNCOMPRESSED, channels);
+    image.write().to_file(&path).unwrap();
+    std::fs::read(path).unwrap()
+}
+
+#[test]
+fn what_a_picture_says_of_its_texels_is_heeded() {
+    let place = Workplace::new();
+    let all = [RED, GREEN, BLUE, WHITE];
+    let with_opacity = |opacity: u8| all.map(|[r, g, b, _]| [r, g, b, opacity]);
+    let fifth = all.map(|texel| texel.map(|code| code / 5));
+    for (name, bytes, expected) in [
+        ("no bits of opacity.tga", tga(0, with_opacity(0)), all),
+        ("bits of opacity.tga", tga(8, with_opacity(0)), with_opacity(0)),
+        ("multiplied.tif", tiff(1, fifth), with_opacity(51)),
+        ("not multiplied.tif", tiff(2, fifth), fifth),
+        ("multiplied.exr", exr(&place), with_opacity(51)),
+        ("photo.png", photo(all), [BLUE, RED, WHITE, GREEN]),
+        ("runs.bmp", bmp(), all),
+        (
+            "up.ktx2",
+            keyed(b"KTXorientation\0ru\0", all),
+            [BLUE, WHITE, RED, GREEN],
+        ),
+        (
+            "left.ktx2",
+            keyed(b"KTXorientation\0ld\0", all),
+            [GREEN, RED, WHITE, BLUE],
+        ),
+        (
+            "exchanged.ktx2",
+            keyed(b"KTXswizzle\0bgr1\0", with_opacity(9)),
+            [BLUE, GREEN, RED, WHITE],
+        ),
+    ] {
+        place.write(name, &bytes);
+        let texture = read_texture(&place.path(name), true, 16, &Budget::of_import()).expect(name);
+        assert_eq!(texture.rgba8, expected.concat(), "{name}");
+    }
+    let panorama = load(&EnvironmentSource::File(place.path("photo.png"))).expect("loads");
+    let first = [0, 1].map(|place| panorama.texels[place].map(f32::round));
+    assert_eq!(first, [[0.0, 0.0, 1.0, 1.0], [1.0, 0.0, 0.0, 1.0]]);
+    // The format says that cameras' words don't count (glTF 2.0, "Images").
+    let (mut buffer, mut document) = square();
+    let view = buffer.view(&photo(all));
+    document["images"] = json!([{"bufferView": view, "mimeType": "image/png"}]);
+    document["textures"] = json!([{"source": 0}]);
+    document["materials"] = json!([{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}]);
+    document["meshes"][0]["primitives"][0]["material"] = json!(0);
+    document["bufferViews"] = json!(buffer.views);
+    document["buffers"] = json!([{"byteLength": buffer.bytes.len()}]);
+    let model = Folder::new().load_glb(&document, &buffer).expect("loads");
+    assert_eq!(model.textures[0].rgba8, all.concat());
 }

@@ -1,11 +1,13 @@
 //! Panoramas and cubes in the formats of textures: PNG, JPEG, TIFF, WebP, KTX2, DDS.
 
+use image::{DynamicImage, Rgb};
+
 use super::canvas::{Canvas, Picture, Source};
 use super::error::EnvironmentError;
 use crate::endings::has_ending;
 use crate::optics::tone::linear_from_srgb;
 use crate::optics::vector::Vec3;
-use crate::picture::{Decoded, Encoded, Numbers, Refusal, decode, is_container, rgba};
+use crate::picture::{Encoded, Refusal, decode, depth, is_container};
 use crate::scene::environment::{EnvironmentEncoding, MAX_WIDTH};
 
 /// The longest side of a cube's face that is of use: four of them are as wide as the widest map.
@@ -23,7 +25,7 @@ pub(super) fn read(source: Source<'_>) -> Result<Picture, EnvironmentError> {
     }
     source.within(source.budget.check(encoded.cost()))?;
     source.loading.step("decoding the image")?;
-    let decoded = decode(&encoded.name, &encoded.bytes, [MAX_WIDTH, FACE_MAX]);
+    let decoded = decode(&encoded.name, &encoded.bytes, [MAX_WIDTH, FACE_MAX], true);
     let images = decoded.map_err(|refusal| match refusal {
         Refusal::Damaged(detail) => source.damaged(detail),
         Refusal::NotRead(feature) => source.unsupported(feature, "re-save it as a PNG, .hdr or .exr"),
@@ -37,21 +39,20 @@ pub(super) fn read(source: Source<'_>) -> Result<Picture, EnvironmentError> {
         value => value,
     };
     let codes: Vec<f32> = (0..=u16::MAX).map(linear).collect();
-    let is_light = matches!(first.numbers, Numbers::Light(_));
-    let mut picture = if images.len() == 1 {
-        let mut canvas = Canvas::new(source, first.width.into(), first.height.into())?;
+    let (count, is_light) = (images.len(), depth(first) == 4);
+    let [width, height] = [first.width(), first.height()];
+    let mut picture = if count == 1 {
+        let mut canvas = Canvas::new(source, width.into(), height.into())?;
         let mut place = 0;
-        for_each_color(first, &codes, |color| {
-            canvas.add_color(place % first.width, place / first.width, color);
+        for_each_color(images, &codes, |color| {
+            canvas.add_color(place % width, place / width, color);
             place += 1;
         });
         canvas.finish()
     } else {
-        let mut texels = Vec::with_capacity(6 * first.width as usize * first.height as usize);
-        for face in &images {
-            for_each_color(face, &codes, |[r, g, b]| texels.push([r, g, b, 1.0]));
-        }
-        Picture::new(first.width, 6 * first.height, texels)
+        let mut texels = Vec::with_capacity(6 * width as usize * height as usize);
+        for_each_color(images, &codes, |[r, g, b]| texels.push([r, g, b, 1.0]));
+        Picture::new(width, 6 * height, texels)
     };
     if is_display && !is_light {
         let warning = "An image for screens: nothing in it is brighter than 1, so lamps and the sun are too dark.";
@@ -60,16 +61,14 @@ pub(super) fn read(source: Source<'_>) -> Result<Picture, EnvironmentError> {
     Ok(picture)
 }
 
-/// The linear colours of an image, row by row.
-fn for_each_color(image: &Decoded, codes: &[f32], take: impl FnMut([f32; 3])) {
-    let channels = image.channels;
-    match &image.numbers {
-        Numbers::Codes8(texels) => rgba(texels, channels, 255)
-            .map(|[r, g, b, _]| [r, g, b].map(|code| codes[257 * usize::from(code)]))
-            .for_each(take),
-        Numbers::Codes16(texels) => rgba(texels, channels, u16::MAX)
-            .map(|[r, g, b, _]| [r, g, b].map(|code| codes[usize::from(code)]))
-            .for_each(take),
-        Numbers::Light(texels) => rgba(texels, channels, 1.0).map(|[r, g, b, _]| [r, g, b]).for_each(take),
+/// The linear colours of images, row by row.
+fn for_each_color(images: Vec<DynamicImage>, codes: &[f32], mut take: impl FnMut([f32; 3])) {
+    for image in images {
+        if depth(&image) == 4 {
+            image.into_rgb32f().pixels().for_each(|color| take(color.0));
+        } else {
+            let linear = |color: &Rgb<u16>| color.0.map(|code| codes[usize::from(code)]);
+            image.into_rgb16().pixels().map(linear).for_each(&mut take);
+        }
     }
 }

@@ -10,7 +10,7 @@ use exr::block::reader::{ChunksReader, Reader};
 use exr::compression::Compression;
 use exr::error::Error as ExrError;
 use exr::math::Vec2;
-use exr::meta::attribute::{AttributeValue, EnvironmentMap, SampleType, Text};
+use exr::meta::attribute::{EnvironmentMap, SampleType};
 use exr::meta::header::Header;
 use exr::meta::{BlockDescription, MetaData};
 use exr::prelude::f16;
@@ -86,8 +86,7 @@ fn read_guarded(source: Source<'_>) -> Result<Picture, EnvironmentError> {
             .push(format!("The file has {layers} layers; number {shown} is shown."));
     }
     picture.bring_to_rec709(source.path, &exr_space(&header));
-    let layout = header.shared_attributes.other.get(&Text::from("envmap"));
-    picture.is_cube = matches!(layout, Some(AttributeValue::EnvironmentMap(EnvironmentMap::Cube)));
+    picture.is_cube = header.own_attributes.environment_map == Some(EnvironmentMap::Cube);
     Ok(picture)
 }
 
@@ -166,7 +165,9 @@ fn choose_layer(source: Source<'_>, headers: &[Header]) -> Result<Layer, Environ
             Some(Layer { index, components })
         })
     };
-    find(&["R", "G", "B"]).or_else(|| find(&["Y"])).ok_or_else(|| {
+    // Some programs write the names in lower case.
+    let named = [&["R", "G", "B"][..], &["r", "g", "b"], &["Y"]];
+    named.into_iter().find_map(find).ok_or_else(|| {
         let found = format!("only the channels {}", names.concat().join(", "));
         source.unsupported(found, "save it with channels R, G and B, or Y")
     })

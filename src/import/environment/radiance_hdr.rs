@@ -7,16 +7,19 @@ use image::{ImageDecoder, ImageError};
 
 use super::canvas::{Canvas, Picture, Source};
 use super::error::EnvironmentError;
+use crate::optics::primaries::Chromaticities;
 
 /// Lines between two progress reports.
 const LINES_A_STEP: u32 = 256;
 
-/// Columns: linear Rec. 709 red, green and blue of CIE X, Y and Z relative to the white D65.
-const RGB_FROM_XYZ: [[f32; 3]; 3] = [
-    [3.240_97, -0.969_244, 0.055_630],
-    [-1.537_383, 1.875_968, -0.203_977],
-    [-0.498_611, 0.041_555, 1.056_972],
-];
+/// Lines of text before the pixels, at most.
+const HEADER_MAX: usize = 4096;
+
+/// CIE XYZ, of `32-bit_rle_xyze`.
+const XYZ: Chromaticities = Chromaticities {
+    primaries: [[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]],
+    white: [1.0 / 3.0; 2],
+};
 
 /// Reads a file line by line, so that memory grows with actual lines and a truncation is located.
 pub(super) fn read(source: Source<'_>) -> Result<Picture, EnvironmentError> {
@@ -24,34 +27,53 @@ pub(super) fn read(source: Source<'_>) -> Result<Picture, EnvironmentError> {
     if bytes.is_empty() {
         return Err(source.truncated("it has no content"));
     }
-    if !bytes.starts_with(b"#?") {
+    let (mut rest, mut header) = (&bytes[..], Vec::new());
+    let is_complete = loop {
+        match text_line(&mut rest) {
+            Some(line) if line.is_empty() => break true,
+            Some(line) if header.len() < HEADER_MAX => header.push(line),
+            _ => break false,
+        }
+    };
+    let values = |key: &'static str| {
+        header
+            .iter()
+            .filter_map(move |line| line.strip_prefix(key)?.trim().into())
+    };
+    let mut formats = values("FORMAT=");
+    // Very old files have no signature.
+    if !bytes.starts_with(b"#?") && formats.clone().next().is_none() {
         return Err(source.wrong("a Radiance .hdr"));
     }
-    // The text ends with an empty line, the resolution's line follows.
-    let end = bytes.windows(2).position(|pair| pair == b"\n\n");
-    let end = end.ok_or_else(|| source.damaged("no empty line ends its header"))?;
-    let after = &bytes[end + 2..];
-    let length = after.iter().position(|byte| *byte == b'\n');
-    let (resolution, mut rest) = after.split_at(length.ok_or_else(|| source.damaged("it has no resolution"))? + 1);
-    let resolution = String::from_utf8_lossy(resolution);
+    if !is_complete {
+        return Err(source.damaged("no empty line ends its header"));
+    }
+    let resolution = text_line(&mut rest).ok_or_else(|| source.damaged("it has no resolution"))?;
     let words: Vec<&str> = resolution.split_whitespace().collect();
     let size: Option<[u32; 2]> = match words[..] {
         ["-Y", height, "+X", width] => width.parse().ok().zip(height.parse().ok()).map(Into::into),
         _ => None,
     };
     let [width, height] = size.ok_or_else(|| {
-        let order = format!("the resolution '{}'", resolution.trim());
+        let order = format!("the resolution '{resolution}'");
         source.unsupported(order, "re-save it with its rows from the top")
     })?;
-    let text = String::from_utf8_lossy(&bytes[..end]);
-    let values = |key: &'static str| text.lines().filter_map(move |line| line.trim().strip_prefix(key));
-    let format = values("FORMAT=").next_back().map_or("32-bit_rle_rgbe", str::trim);
+    let format = formats.next_back().unwrap_or("32-bit_rle_rgbe");
     let is_xyz = format == "32-bit_rle_xyze";
     if !is_xyz && format != "32-bit_rle_rgbe" {
         let format: String = format.chars().take(40).collect();
         return Err(source.unsupported(format!("the format {format}"), "re-save it as 32-bit_rle_rgbe"));
     }
-    let exposures = values("EXPOSURE=").filter_map(|value| value.trim().parse::<f32>().ok());
+    // What earlier programs multiplied the colours by.
+    let corrections = values("COLORCORR=").filter_map(numbers::<3>);
+    let correction = corrections.fold([1.0; 3], |all, one| [0, 1, 2].map(|i| all[i] * one[i]));
+    let gains = correction.map(|factor| if factor > 0.0 { (1.0 / factor) as f32 } else { 1.0 });
+    let space = values("PRIMARIES=").filter_map(numbers::<8>).next_back();
+    let space = space.map(|[rx, ry, gx, gy, bx, by, wx, wy]| Chromaticities {
+        primaries: [[rx, ry], [gx, gy], [bx, by]],
+        white: [wx, wy],
+    });
+    let exposures = values("EXPOSURE=").filter_map(|value| value.parse::<f32>().ok());
     let has_exposure = exposures.product::<f32>() != 1.0;
     let mut canvas = Canvas::new(source, width.into(), height.into())?;
     let mut line = vec![0.0_f32; 3 * width as usize];
@@ -66,10 +88,13 @@ pub(super) fn read(source: Source<'_>) -> Result<Picture, EnvironmentError> {
             error => source.damaged(format_args!("row {} cannot be decoded ({error})", row + 1)),
         })?;
         for (column, color) in (0..).zip(line.as_chunks::<3>().0) {
-            canvas.add_color(column, row, if is_xyz { rgb_from_xyz(*color) } else { *color });
+            canvas.add_color(column, row, [0, 1, 2].map(|i| gains[i] * color[i]));
         }
     }
     let mut picture = canvas.finish();
+    if let Some(space) = if is_xyz { Some(XYZ) } else { space } {
+        picture.bring_to_rec709(source.path, &space);
+    }
     if has_exposure {
         let text = "The file's EXPOSURE is ignored, as most programs do; set the strength instead.";
         picture.warnings.push(text.to_owned());
@@ -77,10 +102,18 @@ pub(super) fn read(source: Source<'_>) -> Result<Picture, EnvironmentError> {
     Ok(picture)
 }
 
-/// Colours beyond Rec. 709 would be negative light.
-fn rgb_from_xyz(xyz: [f32; 3]) -> [f32; 3] {
-    let channel = |to: usize| (0..3).map(|from| RGB_FROM_XYZ[from][to] * xyz[from]).sum::<f32>();
-    [0, 1, 2].map(|to| channel(to).max(0.0))
+/// The next line of the text before the pixels, without its end: LF, or CR LF of files that were edited.
+fn text_line(rest: &mut &[u8]) -> Option<String> {
+    let length = rest.iter().position(|byte| *byte == b'\n')?;
+    let (line, after) = rest.split_at(length + 1);
+    *rest = after;
+    Some(String::from_utf8_lossy(line).trim().to_owned())
+}
+
+/// Numbers with blanks between them.
+fn numbers<const N: usize>(text: &str) -> Option<[f64; N]> {
+    let all: Option<Vec<f64>> = text.split_whitespace().map(|word| word.parse().ok()).collect();
+    all?.try_into().ok()
 }
 
 /// Decodes the next line of pixels (three numbers each). The decoder only accepts whole files: each line is passed as an

@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 use std::collections::HashMap;
 use std::fmt::Display;
+use std::iter::successors;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -38,13 +39,9 @@ const UNDERSTOOD: [&str; 17] = [
     "MSFT_lod",
 ];
 
-/// Extensions with a texture's image, preferred first.
-const TEXTURE_SOURCES: [&str; 4] = [
-    "EXT_texture_webp",
-    "KHR_texture_basisu",
-    "EXT_texture_avif",
-    "MSFT_texture_dds",
-];
+/// Extensions with a texture's image: one that stands before the format's own, and others, preferred first.
+const WEBP: &str = "EXT_texture_webp";
+const TEXTURE_SOURCES: [&str; 3] = ["KHR_texture_basisu", "EXT_texture_avif", "MSFT_texture_dds"];
 
 /// A file whose JSON can be read, with its buffers.
 pub(super) struct Document {
@@ -145,8 +142,12 @@ impl Document {
     /// The bytes of a data URI or of a file beside the model.
     pub fn read_uri(&self, uri: &str) -> Result<Vec<u8>, String> {
         if let Some(data) = uri.strip_prefix("data:") {
-            let data = data.split_once(";base64,").map_or(data, |(_, data)| data);
-            return base64::decode(data).map_err(|error| error.to_string());
+            let (kind, data) = data.split_once(',').ok_or("a data URI without a comma")?;
+            let bytes = Cow::from(percent_decode_str(data));
+            return match kind.to_ascii_lowercase().ends_with(";base64") {
+                true => base64::decode(bytes).map_err(|error| error.to_string()),
+                false => Ok(bytes.into_owned()),
+            };
         }
         if uri.contains("://") {
             return Err(format!(
@@ -158,17 +159,14 @@ impl Document {
         self.files.read(&file).map_err(|error| format!("{file}: {error}"))
     }
 
-    /// The image of a texture, which may stand in an extension.
+    /// The image of a texture, which may stand in an extension: WebP before the format's own image, the others after it,
+    /// since not all of them can be read.
     pub fn image_of(&self, texture: &Texture) -> Option<usize> {
-        let of_extension = |name: &&str| texture.extensions[name]["source"].as_u64();
-        let named = || {
-            TEXTURE_SOURCES
-                .iter()
-                .find_map(of_extension)
-                .map(|image| image as usize)
-        };
-        let is_there = |image: &usize| *image < self.root.images.len();
-        texture.source.filter(is_there).or_else(named).filter(is_there)
+        let of_extension = |name: &&str| Some(texture.extensions[name]["source"].as_u64()? as usize);
+        let first = of_extension(&WEBP);
+        let others = TEXTURE_SOURCES.iter().filter_map(of_extension);
+        let mut all = first.into_iter().chain(texture.source).chain(others);
+        all.find(|image| *image < self.root.images.len())
     }
 
     /// The bytes of a buffer view.
@@ -202,7 +200,7 @@ fn not_gltf(path: &Path, reason: impl Display) -> ModelError {
 /// The JSON in a file's bytes, and the place of its binary chunk.
 fn split<'a>(path: &Path, bytes: &'a [u8]) -> Result<(&'a [u8], Option<Range<usize>>), ModelError> {
     if !bytes.starts_with(b"glTF") {
-        let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+        let text = bare(bytes);
         return match text.iter().find(|byte| !byte.is_ascii_whitespace()) {
             Some(b'{') => Ok((text, None)),
             None => Err(not_gltf(path, "the file is empty")),
@@ -220,12 +218,22 @@ fn split<'a>(path: &Path, bytes: &'a [u8]) -> Result<(&'a [u8], Option<Range<usi
         let what = format_args!("cut short: {actual} bytes of {length}; copy or download the file again");
         ModelError::refused(path, what)
     })?;
-    let chunk = |start: usize, kind: &[u8; 4]| {
+    let chunk = |start: usize| {
         let place = start + 8..start + 8 + number(start)? as usize;
-        (glb.get(start + 4..start + 8)? == kind && place.end <= length).then_some(place)
+        (place.end <= length).then_some((glb.get(start + 4..start + 8)?, place))
     };
-    let json = chunk(12, b"JSON").ok_or_else(|| ModelError::invalid(path, "its GLB chunks do not fit its length"))?;
-    Ok((&glb[json.clone()], chunk(json.end, b"BIN\0")))
+    let mut chunks = successors(chunk(12), |(_, place)| chunk(place.end));
+    let json = chunks.next().filter(|(kind, _)| *kind == b"JSON");
+    let (_, json) = json.ok_or_else(|| ModelError::invalid(path, "its GLB chunks do not fit its length"))?;
+    let binary = chunks.find(|(kind, _)| *kind == b"BIN\0");
+    Ok((bare(&glb[json]), binary.map(|(_, place)| place)))
+}
+
+/// JSON without a byte order mark, and without the NULs that some programs fill a chunk with.
+fn bare(text: &[u8]) -> &[u8] {
+    let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
+    let end = text.iter().rposition(|byte| *byte != 0).map_or(0, |last| last + 1);
+    &text[..end]
 }
 
 fn parse<'de, T: Deserialize<'de>>(path: &Path, text: &'de [u8]) -> Result<T, ModelError> {

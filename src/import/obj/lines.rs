@@ -1,143 +1,209 @@
-//! Lines of OBJ and MTL files, prepared for the tobj crate, which refuses a whole file for one bad line.
+//! Lines of OBJ and MTL files: what the ufbx crate doesn't read of them, or refuses a whole file for.
 
 use std::borrow::Cow;
 
+use super::table::MTL_PARAMETERS;
 use crate::files::text_or_latin_1;
-use crate::scene::report::{Fate, ImportReport};
 
 /// Name of an unnamed material.
 const UNNAMED: &str = "(unnamed)";
 
-/// Lines of an OBJ file: continued lines are joined, numbers have no comment after them, `usemtl` gets a name, `vt` two
-/// coordinates, and missing vertex colours are white. Polylines are left out: the crate fills them.
-pub(super) fn of_model(bytes: &[u8]) -> Cow<'_, [u8]> {
-    let text = text_of(bytes);
-    let are_some_colored = has_some_colors(text.as_bytes());
-    if let Cow::Borrowed(plain) = text
-        && !are_some_colored
-        && !plain.as_bytes().split(|byte| *byte == b'\n').any(is_odd)
-    {
-        return Cow::Borrowed(plain.as_bytes());
-    }
-    let lines = joined(&text).into_iter().map(|line| {
-        let line = if is_of_numbers(line.trim().as_bytes()) {
-            plain_numbers(&line)
-        } else {
-            line
-        };
-        let words = || line.split_whitespace();
-        match (words().next(), words().count()) {
-            (Some("usemtl"), 1) => format!("usemtl {UNNAMED}"),
-            (Some("usemtl"), _) => line.replacen('\t', " ", 1),
-            (Some("vt"), 2) => format!("{line} 0"),
-            (Some("l"), _) => String::new(),
-            (Some("v"), 4) if are_some_colored => format!("{line} 1 1 1"),
-            _ => line,
-        }
-    });
-    Cow::Owned(lines.collect::<Vec<_>>().join("\n").into_bytes())
+/// A model file.
+#[derive(Default)]
+pub(super) struct Source<'a> {
+    pub text: Cow<'a, str>,
+    /// What follows each `mtllib`.
+    pub libraries: Vec<String>,
+    /// Smoothing group of each face, polyline and point; 0 is flat.
+    pub groups: Vec<u32>,
+    /// Objects, or groups where there are none: the first face, and the name.
+    pub objects: Vec<(usize, String)>,
 }
 
-/// Byte order mark of UTF-8.
-const UTF_8: &[u8] = b"\xef\xbb\xbf";
+/// Reads a model file's lines. `usemtl` gets a name, `vt` two coordinates; comments go on in no next line.
+pub(super) fn of_model(bytes: &[u8]) -> Source<'_> {
+    let text = text_of(bytes);
+    let (mut source, mut is_odd) = (Source::default(), false);
+    let (mut object, mut group, mut smoothing) = (String::new(), String::new(), 0);
+    for line in text.lines() {
+        is_odd |= repaired(line).is_some();
+        let (key, rest) = keyword(line);
+        let words = rest.split_whitespace().count();
+        let faces = match key {
+            "f" => words.min(1),
+            "l" => words.saturating_sub(1),
+            "p" => words,
+            _ => 0,
+        };
+        match key {
+            "mtllib" => source.libraries.push(rest.to_owned()),
+            "o" => rest.clone_into(&mut object),
+            "g" => rest.clone_into(&mut group),
+            "s" => smoothing = if rest == "off" { 0 } else { rest.parse().unwrap_or(1) },
+            _ => {}
+        }
+        if faces > 0 {
+            let name = if object.is_empty() { &group } else { &object };
+            if source.objects.last().is_none_or(|(_, last)| last != name) {
+                source.objects.push((source.groups.len(), name.clone()));
+            }
+            source.groups.resize(source.groups.len() + faces, smoothing);
+        }
+    }
+    source.text = text;
+    if is_odd {
+        let lines = source.text.lines();
+        let lines: Vec<_> = lines
+            .map(|line| repaired(line).map_or(line.into(), Cow::Owned))
+            .collect();
+        source.text = lines.join("\n").into();
+    }
+    source
+}
 
-/// The text of a file in UTF-8, UTF-16 or, if it is neither, Latin-1.
+/// A line as the crate reads it, where it would not.
+fn repaired(line: &str) -> Option<String> {
+    match keyword(line) {
+        // A comment may end in a folder's name.
+        (key, _) if key.starts_with('#') && line.trim_end().ends_with('\\') => Some(String::new()),
+        ("usemtl", "") => Some(format!("usemtl {UNNAMED}")),
+        ("vt", rest) => {
+            let mut numbers = rest.split_whitespace().take_while(|word| !word.starts_with('#'));
+            let (first, second) = (numbers.next()?, numbers.next());
+            second.is_none().then(|| format!("vt {first} 0"))
+        }
+        _ => None,
+    }
+}
+
+/// The first line that lacks numbers, or has words in their places.
+pub(super) fn broken(text: &str) -> Option<String> {
+    // Windows writes -1.#IND and -nan(ind) for what is no number.
+    let is_number = |word: &str| word.parse::<f32>().is_ok() || word.contains(['#', '(']);
+    let is_broken = |line: &&str| {
+        let (key, rest) = keyword(line);
+        let least = match key {
+            "v" | "vn" => 3,
+            "vt" => 2,
+            _ => 0,
+        };
+        let numbers = rest.split_whitespace().take(least).filter(|word| is_number(word));
+        numbers.count() < least && !line.trim_end().ends_with('\\')
+    };
+    let mut lines = text.lines().enumerate();
+    let (place, line) = lines.find(|(_, line)| is_broken(line))?;
+    Some(format!("line {} (\"{}\") lacks a number", place + 1, line.trim()))
+}
+
+/// A line's first word, and the rest.
+fn keyword(line: &str) -> (&str, &str) {
+    let line = line.trim();
+    let (key, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
+    (key, rest.trim_start())
+}
+
+/// The text of a file in UTF-8, UTF-16 or, if it is neither, Latin-1; lines that end in CR alone end in LF.
 fn text_of(bytes: &[u8]) -> Cow<'_, str> {
     let of_units = |bytes: &[u8], unit: fn([u8; 2]) -> u16| {
         let units: Vec<u16> = bytes.as_chunks::<2>().0.iter().map(|pair| unit(*pair)).collect();
         Cow::Owned(String::from_utf16_lossy(&units))
     };
-    match bytes {
+    let text = match bytes {
         [0xfe, 0xff, rest @ ..] => of_units(rest, u16::from_be_bytes),
         [0xff, 0xfe, rest @ ..] => of_units(rest, u16::from_le_bytes),
-        _ => text_or_latin_1(bytes.strip_prefix(UTF_8).unwrap_or(bytes)),
+        _ => text_or_latin_1(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)),
+    };
+    let mut pairs = text.as_bytes().windows(2);
+    match pairs.any(|pair| pair[0] == b'\r' && pair[1] != b'\n') {
+        true => text.replace('\r', "\n").into(),
+        false => text,
     }
 }
 
-/// Whether some vertices have a colour and others have none.
-fn has_some_colors(bytes: &[u8]) -> bool {
-    let vertices = bytes
-        .split(|byte| *byte == b'\n')
-        .filter(|line| line.starts_with(b"v "));
-    let mut has_color = vertices.map(|line| words(line) > 6);
-    let first = has_color.next();
-    has_color.any(|has| Some(has) != first)
+/// A material of a library.
+#[derive(Debug, Default)]
+pub(super) struct Material {
+    pub name: String,
+    /// Keywords as the table spells them, with what follows each; the last of a keyword counts.
+    pub lines: Vec<(String, String)>,
 }
 
-fn words(line: &[u8]) -> usize {
-    let words = line.split(u8::is_ascii_whitespace);
-    let words = words.filter(|word| !word.is_empty());
-    words.take_while(|word| !word.starts_with(b"#")).count()
+impl Material {
+    pub fn text(&self, keyword: &str) -> Option<&str> {
+        let line = self.lines.iter().rfind(|(key, _)| key == keyword)?;
+        Some(&line.1)
+    }
+
+    /// A number, if it is finite.
+    pub fn number(&self, keyword: &str) -> Option<f32> {
+        let number = numbers(self.text(keyword)?).first().copied();
+        number.filter(|x| x.is_finite())
+    }
+
+    /// A colour: green and blue that are left out are as red, and what comes behind `xyz` is of CIE.
+    pub fn color(&self, keyword: &str) -> Option<[f32; 3]> {
+        let text = self.text(keyword)?;
+        let numbers = numbers(text);
+        let [a, b, c] = numbers.first_chunk().copied().or(Some([*numbers.first()?; 3]))?;
+        if !text.starts_with("xyz") {
+            return Some([a, b, c]);
+        }
+        // Columns: linear Rec. 709 red, green and blue of X, Y and Z.
+        let rgb_from_xyz = glam::mat3(
+            glam::vec3(3.240_97, -0.969_244, 0.055_630),
+            glam::vec3(-1.537_383, 1.875_968, -0.203_977),
+            glam::vec3(-0.498_611, 0.041_555, 1.056_972),
+        );
+        Some((rgb_from_xyz * glam::vec3(a, b, c)).to_array())
+    }
 }
 
-/// Whether a line is of a vertex, a face or a polyline.
-fn is_of_numbers(line: &[u8]) -> bool {
-    matches!(line.first(), Some(b'v' | b'f' | b'l'))
+/// The numbers at the beginning of a text.
+pub(super) fn numbers(text: &str) -> Vec<f32> {
+    let text = text.strip_prefix("xyz").unwrap_or(text);
+    text.split_whitespace().map_while(|word| word.parse().ok()).collect()
 }
 
-/// A line without the comment at its end, and with NaN for what C++ writes in its place on Windows: `-1.#IND`, `-nan(ind)`.
-fn plain_numbers(line: &str) -> String {
-    let words = line.split_whitespace().take_while(|word| !word.starts_with('#'));
-    let plain = words.map(|word| if word.contains(['#', '(']) { "nan" } else { word });
-    plain.collect::<Vec<_>>().join(" ")
-}
-
-fn is_odd(line: &[u8]) -> bool {
-    let line = line.trim_ascii();
-    line.ends_with(b"\\")
-        || line.starts_with(b"usemtl") && !line.starts_with(b"usemtl ")
-        || line.starts_with(b"vt") && words(line) == 2
-        || is_of_numbers(line) && (line[0] == b'l' || line.iter().any(|byte| b"#(".contains(byte)))
-}
-
-/// Readable lines of a material library; the others are reported.
-pub(super) fn of_library(bytes: &[u8], name: &str, report: &mut ImportReport) -> Vec<u8> {
-    let mut lines = joined(&text_of(bytes));
-    for line in &mut lines {
-        match line.split_whitespace().collect::<Vec<_>>()[..] {
-            ["newmtl"] => *line = format!("newmtl {UNNAMED}"),
-            // Green and blue that are left out are as red; tobj panics without them.
-            [key @ ("Ka" | "Kd" | "Ks" | "Ke"), ref numbers @ ..] if numbers.len() < 3 && are_numbers(numbers) => {
-                let red = numbers.first().unwrap_or(&"-");
-                *line = format!("{key} {red} {red} {red}");
-            }
-            _ => {}
+/// Materials of a library.
+pub(super) fn of_library(bytes: &[u8]) -> Vec<Material> {
+    let mut materials: Vec<Material> = Vec::new();
+    for line in joined(&text_of(bytes)) {
+        let (key, rest) = keyword(&line);
+        if key.eq_ignore_ascii_case("newmtl") {
+            let name = if rest.is_empty() { UNNAMED } else { rest }.to_owned();
+            let lines = Vec::new();
+            materials.push(Material { name, lines });
+        } else if let Some(material) = materials.last_mut()
+            && !key.is_empty()
+            && !key.starts_with('#')
+        {
+            let key = if key.eq_ignore_ascii_case("map_bump") {
+                "bump"
+            } else {
+                key
+            };
+            let known = MTL_PARAMETERS.iter().find(|row| row.place.eq_ignore_ascii_case(key));
+            let key = known.map_or(key, |row| row.place);
+            material.lines.push((key.to_owned(), rest.to_owned()));
         }
     }
-    lines.retain(|line| {
-        let alone = format!("newmtl alone\n{line}\n");
-        let is_read = tobj::load_mtl_buf(&mut alone.as_bytes()).is_ok();
-        if !is_read {
-            let what = format!("a line of a library of materials (\"{}\")", line.trim());
-            report.note(Fate::Ignored, what, name);
-        }
-        is_read
-    });
-    lines.join("\n").into_bytes()
+    materials
 }
 
-fn are_numbers(words: &[&str]) -> bool {
-    words.iter().all(|word| word.parse::<f32>().is_ok())
-}
-
-/// Lines, with those that end in `\` joined to the next, which become empty. A comment may end in a folder's name.
+/// Lines, with those that end in `\` joined to the next. A comment may end in a folder's name.
 fn joined(text: &str) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
-    // The line that goes on.
-    let mut open = None;
+    let mut goes_on = false;
     for line in text.lines() {
-        let (line, continues) = match line.trim_end().strip_suffix('\\') {
-            Some(start) if open.is_some() || !line.trim_start().starts_with('#') => (start, true),
+        let (start, continues) = match line.trim_end().strip_suffix('\\') {
+            Some(start) if goes_on || !line.trim_start().starts_with('#') => (start, true),
             _ => (line, false),
         };
-        let place = open.unwrap_or(lines.len());
-        if let Some(first) = lines.get_mut(place) {
-            *first = format!("{first} {line}");
-            lines.push(String::new());
-        } else {
-            lines.push(line.to_owned());
+        match lines.last_mut().filter(|_| goes_on) {
+            Some(last) => *last = format!("{last} {start}"),
+            None => lines.push(start.to_owned()),
         }
-        open = continues.then_some(place);
+        goes_on = continues;
     }
     lines
 }

@@ -1,4 +1,5 @@
-//! Wavefront OBJ files with their materials (.mtl), by the tobj crate.
+//! Wavefront OBJ files, by the ufbx crate, with their materials (.mtl), which are read here: a library is lines of a keyword
+//! and its numbers.
 //!
 //! The format is Y up, like ours, with texture coordinates upwards. Its materials are of the 1990s: their exponent becomes
 //! a roughness, and the additions of later exporters (`Pr`, `Pm`, `norm`, …) are taken where they are.
@@ -7,320 +8,271 @@ mod lines;
 mod map;
 mod table;
 
-use std::cell::RefCell;
-use std::io::BufReader;
+use std::collections::HashMap;
 use std::path::Path;
 
 pub use self::table::MTL_PARAMETERS;
 
+use self::lines::Material;
 use self::map::Map;
-use glam::{DVec3, Vec2, Vec3, Vec4};
-use tobj::{LoadOptions, LoadResult, Material};
-
+use crate::fbx::polygons::{Broken, Look, Polygons};
+use crate::fbx::{options_of, progress_of, report_warnings, unread};
 use crate::files::Files;
+use crate::maps::{Maps, Part, grey, holds_heights, opacity_of};
 use crate::model_error::ModelError;
-use crate::panics::contained;
-use crate::picture::Encoded;
 use crate::scene::mesh::Mesh;
 use crate::scene::report::{Fate, ImportReport};
 use crate::scene::texture::TextureTarget;
-use crate::scene::{AlphaMode, Filter, Model, ModelObject, ModelOptions, Slot, Texture, TextureRef, Wrap};
+use crate::scene::{AlphaMode, Filter, Model, ModelObject, ModelOptions, Slot, TextureRef, Wrap};
 
 /// Loads the contents of an OBJ file.
 pub(super) fn load(path: &Path, files: &Files, bytes: &[u8], options: &ModelOptions) -> Result<Model, ModelError> {
-    let invalid = |reason: String| ModelError::invalid(path, reason);
-    let text = lines::of_model(bytes);
-    let (read, mut report) = parse(&text, files);
-    files.import.loading.check()?;
-    let read = read.ok_or_else(|| invalid("its faces contradict each other".to_owned()))?;
-    let (parts, materials) = read.map_err(|error| invalid(error.to_string()))?;
-    let materials = materials.unwrap_or_default();
-    let mut slots = Slots::new(files, options, &materials);
-    let mut mesh = Mesh::default();
-    let mut objects: Vec<ModelObject> = Vec::new();
-    for (place, part) in parts.iter().enumerate() {
-        files
-            .import
-            .loading
-            .step(format!("mesh {} of {}", place + 1, parts.len()))?;
-        let slot = slots.slot(part.mesh.material_id, &mut report);
-        let normal_texture = slots.slots[slot as usize].texture(TextureTarget::Normal);
-        let mut read = read_part(&part.mesh, slot);
-        repair(&mut read, &part.name, &mut report);
-        let texture_from_uv = normal_texture.map_or(IDENTITY, |texture| texture.texture_from_mesh_uv);
-        read.make_tangents(texture_from_uv, normal_texture.is_some(), &files.import.loading);
-        if !read.colors.is_empty() {
-            slots.slots[slot as usize].color_by_vertices();
-            report.note(Fate::Used, "vertex colours", &part.name);
-        }
-        let vertices = part.mesh.positions.len() / 3;
-        for (what, numbers, width) in [
-            ("texture coordinates", &part.mesh.texcoords, 2),
-            ("normals", &part.mesh.normals, 3),
-        ] {
-            if !numbers.is_empty() && numbers.len() != width * vertices {
-                report.note(Fate::Ignored, format!("{what} that only some faces have"), &part.name);
+    let loading = &files.import.loading;
+    let source = lines::of_model(bytes);
+    let mut report = ImportReport::default();
+    let progress = progress_of(loading);
+    let scene = ufbx::load_memory(
+        source.text.as_bytes(),
+        ufbx::LoadOpts {
+            file_format: ufbx::FileFormat::Obj,
+            // Objects are told apart here: for the crate each has all vertices.
+            obj_merge_objects: true,
+            obj_merge_groups: true,
+            ..options_of(&files.import, &progress)
+        },
+    );
+    loading.check()?;
+    let scene = scene.map_err(|error| match lines::broken(&source.text) {
+        Some(reason) if error.type_ == ufbx::ErrorType::Unknown => ModelError::invalid(path, reason),
+        _ => unread(path, &files.import, &error),
+    })?;
+    report_warnings(&scene, &mut report);
+    let mut slots = Slots {
+        library: libraries(files, &source.libraries, &mut report),
+        maps: Maps::new(files, options),
+        slot_of: HashMap::new(),
+        slots: Vec::new(),
+    };
+    let (mut mesh, mut objects) = (Mesh::default(), Vec::<ModelObject>::new());
+    let mut broken = Broken::default();
+    // All faces are in one mesh.
+    let all = scene
+        .nodes
+        .as_ref()
+        .iter()
+        .find_map(|node| Some((node, node.mesh.as_ref()?)));
+    if let Some((node, all)) = all {
+        let polygons = Polygons::new(all, &source.groups, loading);
+        let ends = source
+            .objects
+            .iter()
+            .skip(1)
+            .map(|(start, _)| *start)
+            .chain([all.faces.len()]);
+        for ((start, name), end) in source.objects.iter().zip(ends) {
+            loading.step(format!("object {} of {}", objects.len() + 1, source.objects.len()))?;
+            let first = mesh.triangles.len();
+            for (material, faces) in by_material(*start..end, &all.face_material) {
+                let name = material.and_then(|material| node.materials.as_ref().get(material as usize));
+                let slot = slots.slot(name.map(|material| &*material.element.name), &mut report);
+                let place = slots.slots[slot as usize].texture(TextureTarget::Normal);
+                let has_colors = all.vertex_color.exists;
+                let look = Look {
+                    slot,
+                    uvs: [Some(&all.vertex_uv), None],
+                    colors: has_colors.then_some(&all.vertex_color),
+                    normal_texture_from_uv: place.map(|place| place.texture_from_mesh_uv),
+                };
+                if has_colors {
+                    slots.slots[slot as usize].color_by_vertices();
+                }
+                mesh.append(polygons.read(&faces, &look, &mut broken, loading));
+            }
+            let triangles = first..mesh.triangles.len();
+            if !triangles.is_empty() {
+                let name = name.clone();
+                objects.push(ModelObject { name, triangles });
             }
         }
-        let first = mesh.triangles.len();
-        mesh.append(read);
-        let triangles = first..mesh.triangles.len();
-        match objects.last_mut() {
-            // A part for each of its materials.
-            Some(last) if last.name == part.name => last.triangles.end = triangles.end,
-            _ => objects.push(ModelObject {
-                name: part.name.clone(),
-                triangles,
-            }),
+        if all.vertex_color.exists {
+            report.note(Fate::Used, "vertex colours", "");
         }
     }
-    report.count(Fate::Used, "meshes", "", parts.len());
+    if broken.faces > 0 {
+        return Err(ModelError::invalid(path, "a face has a vertex that is not there"));
+    }
+    broken.report("", &mut report);
+    if let [only] = &objects[..]
+        && only.name.is_empty()
+    {
+        // The whole has the file's name.
+        objects.clear();
+    }
+    for object in objects.iter_mut().filter(|object| object.name.is_empty()) {
+        object.name = "unnamed".to_owned();
+    }
+    report.count(Fate::Used, "meshes", "", objects.len().max(1));
     Ok(Model {
         mesh,
+        textures: slots.maps.finish(&mut slots.slots),
         slots: slots.slots,
-        textures: slots.textures,
         objects,
         report,
         ..Model::default()
     })
 }
 
-/// Parts and materials of prepared lines, and the report on its libraries; `None` if the crate panics, as it does for some
-/// malformed faces.
-fn parse(text: &[u8], files: &Files) -> (Option<LoadResult>, ImportReport) {
-    let report = RefCell::new(ImportReport::default());
-    let options = LoadOptions {
-        single_index: true,
-        triangulate: true,
-        ignore_points: true,
-        ignore_lines: true,
-    };
-    let read = contained(|| {
-        let mut lines = BufReader::new(files.import.loading.watched(text));
-        tobj::load_obj_buf(&mut lines, &options, |library| read_library(files, library, &report))
-    });
-    (read, report.into_inner())
+/// Faces of an object by their material, in its order.
+fn by_material(faces: std::ops::Range<usize>, material: &[u32]) -> Vec<(Option<u32>, Vec<u32>)> {
+    let mut parts: Vec<(Option<u32>, Vec<u32>)> = Vec::new();
+    let mut places = HashMap::new();
+    for face in faces {
+        let material = material.get(face).copied();
+        let place = *places.entry(material).or_insert_with(|| {
+            parts.push((material, Vec::new()));
+            parts.len() - 1
+        });
+        parts[place].1.push(face as u32);
+    }
+    parts
 }
 
-/// Materials of a library; empty if it is missing.
-fn read_library(files: &Files, library: &Path, report: &RefCell<ImportReport>) -> tobj::MTLLoadResult {
-    let name = library.to_string_lossy();
-    match files.read(&name) {
-        Ok(bytes) => {
-            let lines = lines::of_library(&bytes, &name, &mut report.borrow_mut());
-            tobj::load_mtl_buf(&mut lines.as_slice())
+/// Materials of a model's libraries. A line names one, whose name may have spaces, or several.
+fn libraries(files: &Files, lines: &[String], report: &mut ImportReport) -> HashMap<String, Material> {
+    let mut library = HashMap::new();
+    let read = |name| (name, files.read(name));
+    for line in lines {
+        let mut contents = vec![read(line.as_str())];
+        if contents[0].1.is_err() && line.contains(char::is_whitespace) {
+            contents = line.split_whitespace().map(read).collect();
         }
-        Err(error) => {
-            let mut report = report.borrow_mut();
-            report.note(
-                Fate::Missing,
-                format!("a library of materials, grey instead ({error})"),
-                &name,
-            );
-            Ok(Default::default())
-        }
-    }
-}
-
-/// The triangles of one part.
-fn read_part(source: &tobj::Mesh, slot: u32) -> Mesh {
-    let positions = source.positions.as_chunks::<3>().0;
-    let count = positions.len();
-    let normals = source.normals.as_chunks::<3>().0;
-    let uvs = source.texcoords.as_chunks::<2>().0;
-    let colors = source.vertex_color.as_chunks::<3>().0;
-    let in_range = |triangle: &&[u32; 3]| triangle.iter().all(|&vertex| (vertex as usize) < count);
-    let triangles: Vec<[u32; 3]> = source
-        .indices
-        .as_chunks::<3>()
-        .0
-        .iter()
-        .filter(in_range)
-        .copied()
-        .collect();
-    let has_uvs = uvs.len() == count;
-    let mut mesh = Mesh {
-        positions: positions.iter().map(|p| DVec3::from_array(p.map(f64::from))).collect(),
-        normals: vec![Vec3::ZERO; count],
-        uvs: (0..count)
-            .map(|vertex| {
-                if has_uvs {
-                    Vec2::new(uvs[vertex][0], 1.0 - uvs[vertex][1])
-                } else {
-                    Vec2::ZERO
-                }
-            })
-            .collect(),
-        tangents: vec![Vec4::W; count],
-        slots: vec![slot; triangles.len()],
-        triangles,
-        ..Mesh::default()
-    };
-    if colors.len() == count {
-        mesh.colors = colors.iter().map(|[r, g, b]| [*r, *g, *b, 1.0]).collect();
-    }
-    if normals.len() == count {
-        mesh.normals = normals.iter().map(|normal| Vec3::from_array(*normal)).collect();
-    }
-    mesh
-}
-
-/// Replaces texture coordinates and normals that are no finite numbers.
-fn repair(mesh: &mut Mesh, name: &str, report: &mut ImportReport) {
-    let broken = mesh.uvs.iter_mut().filter(|uv| !uv.is_finite());
-    let uvs = broken.map(|uv| *uv = Vec2::ZERO).count();
-    report.count(Fate::Ignored, "texture coordinates that are not finite", name, uvs);
-    if mesh.normals.iter().any(|normal| *normal != Vec3::ZERO) {
-        let normals = mesh.repair_normals();
-        let what = "normals without a length, taken from triangles";
-        report.count(Fate::Approximated, what, name, normals);
-    }
-}
-
-/// Texture coordinates as they are.
-const IDENTITY: [f32; 6] = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
-
-/// Converter of materials to slots with textures.
-struct Slots<'a> {
-    files: &'a Files,
-    side_max: u32,
-    materials: &'a [Material],
-    /// Slot of each material; the last one is for faces without a material.
-    slot_of: Vec<Option<u32>>,
-    slots: Vec<Slot>,
-    textures: Vec<Texture>,
-}
-
-impl<'a> Slots<'a> {
-    fn new(files: &'a Files, options: &ModelOptions, materials: &'a [Material]) -> Self {
-        Self {
-            files,
-            side_max: options.texture_side_max,
-            materials,
-            slot_of: vec![None; materials.len() + 1],
-            slots: Vec::new(),
-            textures: Vec::new(),
-        }
-    }
-
-    fn slot(&mut self, material: Option<usize>, report: &mut ImportReport) -> u32 {
-        let place = material
-            .filter(|&m| m < self.materials.len())
-            .unwrap_or(self.materials.len());
-        if let Some(slot) = self.slot_of[place] {
-            return slot;
-        }
-        let slot = match self.materials.get(place) {
-            Some(material) => self.read(material, report),
-            None => Slot::clay(),
-        };
-        self.slots.push(slot);
-        let index = self.slots.len() as u32 - 1;
-        self.slot_of[place] = Some(index);
-        index
-    }
-
-    fn read(&mut self, material: &Material, report: &mut ImportReport) -> Slot {
-        report.note(Fate::Used, "materials", &material.name);
-        // NaN counts as 0.
-        let within = |x: f32, most: f32| if x.is_nan() { 0.0 } else { x.clamp(0.0, most) };
-        let unit = |x: f32| within(x, 1.0);
-        let number = |key: &str| -> Option<f32> {
-            let word = material.unknown_param.get(key)?.split_whitespace().next()?;
-            word.parse().ok().filter(|x: &f32| x.is_finite())
-        };
-        let shininess = material.shininess.unwrap_or(0.0).max(0.0);
-        // Blinn-Phong's exponent as the α of a microfacet distribution: Walter et al. 2007.
-        let alpha = (2.0 / (shininess + 2.0)).sqrt();
-        let is_matte = matches!(material.illumination_model, Some(0 | 1));
-        let is_shiny = material.specular.is_some_and(|color| color.iter().any(|x| *x > 0.0)) || number("Pr").is_some();
-        let opacity = material.dissolve.or_else(|| Some(1.0 - number("Tr")?));
-        let opacity = opacity.map_or(1.0, unit);
-        let ior = material.optical_density.filter(|ior| *ior >= 1.0);
-        let mut slot = Slot {
-            name: material.name.clone(),
-            alpha_mode: if opacity < 1.0 {
-                AlphaMode::Blend
-            } else {
-                AlphaMode::Opaque
-            },
-            double_sided: true,
-            ..Slot::default()
-        }
-        .with(&[
-            ("base.metalness", number("Pm").unwrap_or(0.0)),
-            ("specular.roughness", number("Pr").unwrap_or(alpha.sqrt())),
-            ("specular.ior", ior.unwrap_or(1.5)),
-            ("specular.weight", f32::from(u8::from(is_shiny && !is_matte))),
-            ("coat.weight", number("Pc").unwrap_or(0.0)),
-            ("coat.roughness", number("Pcr").unwrap_or(0.0)),
-            ("geometry.opacity", opacity),
-        ]);
-        slot.set_color("base.color", material.diffuse.unwrap_or([0.6; 3]).map(unit));
-        slot.set_color(
-            "emission.color",
-            material.emissive.unwrap_or([0.0; 3]).map(|x| within(x, 1e6)),
-        );
-        self.read_color(material, &mut slot, report);
-        let normal = material.unknown_param.get("norm").or(material.normal_texture.as_ref());
-        let normal = normal.map(|line| Map::parse(line));
-        *slot.texture_mut(TextureTarget::Normal) = self.texture(normal.as_ref(), false, report).found();
-        slot.set("geometry.normal_strength", normal.map_or(1.0, |map| map.strength));
-        if let Some(reference) = slot.texture(TextureTarget::Normal)
-            && is_height(&self.textures[reference.texture])
-        {
-            report.note(Fate::Ignored, "a bump texture, which holds heights", &material.name);
-            *slot.texture_mut(TextureTarget::Normal) = None;
-        }
-        let emissive = material.unknown_param.get("map_Ke").map(|line| Map::parse(line));
-        match self.texture(emissive.as_ref(), true, report) {
-            Picture::Found(texture) => {
-                *slot.texture_mut(TextureTarget::Emission) = Some(texture);
-                if slot.color("emission.color") == [0.0; 3] {
-                    slot.set("emission.color", 1.0);
+        for (name, contents) in contents {
+            match contents {
+                Ok(bytes) => library.extend(lines::of_library(&bytes).into_iter().map(|one| (one.name.clone(), one))),
+                Err(error) => {
+                    let what = format!("a library of materials, grey instead ({error})");
+                    report.note(Fate::Missing, what, name);
                 }
             }
-            Picture::Missing => slot.set("emission.color", 0.0),
-            Picture::Unnamed => {}
         }
-        table::report_unread(material, report);
-        report.note(
-            Fate::Approximated,
-            "a .mtl material, as metalness and roughness",
-            &material.name,
-        );
-        slot
     }
+    library
+}
 
-    /// The base colour map, and whether it has opacity.
-    fn read_color(&mut self, material: &Material, slot: &mut Slot, report: &mut ImportReport) {
-        let [color, opacity] =
-            [&material.diffuse_texture, &material.dissolve_texture].map(|line| line.as_deref().map(Map::parse));
-        let texture = self.texture(color.as_ref(), true, report);
-        if texture != Picture::Unnamed && slot.color("base.color") == [0.0; 3] {
-            // Many exporters write black beside a texture and mean white.
-            slot.set("base.color", 1.0);
-        }
-        if texture == Picture::Missing {
-            slot.multiply("base.color", [0.5; 3]);
-        }
-        *slot.texture_mut(TextureTarget::BaseColor) = texture.found();
-        let Some(opacity) = opacity else { return };
-        if color.is_some_and(|color| color.name == opacity.name) {
-            slot.alpha_mode = AlphaMode::Blend;
+/// Slots of the materials that faces have asked for so far.
+struct Slots<'a> {
+    library: HashMap<String, Material>,
+    maps: Maps<'a>,
+    /// Slot of a material; none for faces without one.
+    slot_of: HashMap<Option<String>, u32>,
+    slots: Vec<Slot>,
+}
+
+impl Slots<'_> {
+    fn slot(&mut self, name: Option<&str>, report: &mut ImportReport) -> u32 {
+        let material = name.and_then(|name| self.library.get(name));
+        let known = self.slot_of.entry(material.map(|material| material.name.clone()));
+        *known.or_insert_with(|| {
+            self.slots
+                .push(material.map_or_else(Slot::clay, |material| read(material, &mut self.maps, report)));
+            self.slots.len() as u32 - 1
+        })
+    }
+}
+
+fn read(material: &Material, maps: &mut Maps<'_>, report: &mut ImportReport) -> Slot {
+    report.note(Fate::Used, "materials", &material.name);
+    // NaN counts as 0.
+    let within = |x: f32, most: f32| if x.is_nan() { 0.0 } else { x.clamp(0.0, most) };
+    let number = |key: &str| material.number(key);
+    let color = |key: &str, default: f32, most: f32| {
+        let color = material.color(key).unwrap_or([default; 3]);
+        color.map(|x| within(x, most))
+    };
+    let shininess = number("Ns").unwrap_or(0.0).max(0.0);
+    // Blinn-Phong's exponent as the α of a microfacet distribution: Walter et al. 2007.
+    let alpha = (2.0 / (shininess + 2.0)).sqrt();
+    let is_matte = matches!(number("illum"), Some(0.0 | 1.0));
+    let is_shiny = color("Ks", 0.0, 1.0) != [0.0; 3] || number("Pr").is_some() || material.text("map_Pr").is_some();
+    let opacity = number("d").or_else(|| Some(1.0 - number("Tr")?));
+    let opacity = opacity.map_or(1.0, |opacity| within(opacity, 1.0));
+    let mut slot = Slot {
+        name: material.name.clone(),
+        alpha_mode: if opacity < 1.0 {
+            AlphaMode::Blend
         } else {
-            report.note(Fate::Ignored, "a texture of opacity of its own", &material.name);
+            AlphaMode::Opaque
+        },
+        double_sided: true,
+        ..Slot::default()
+    }
+    .with(&[
+        ("base.metalness", number("Pm").unwrap_or(0.0)),
+        ("specular.roughness", number("Pr").unwrap_or(alpha.sqrt())),
+        ("specular.ior", number("Ni").filter(|ior| *ior >= 1.0).unwrap_or(1.5)),
+        ("specular.weight", f32::from(u8::from(is_shiny && !is_matte))),
+        ("coat.weight", number("Pc").unwrap_or(0.0)),
+        ("coat.roughness", number("Pcr").unwrap_or(0.0)),
+        ("geometry.opacity", opacity),
+    ]);
+    slot.set_color("base.color", color("Kd", 0.6, 1.0));
+    slot.set_color("emission.color", color("Ke", 0.0, 1e6));
+    let mut looks = Looks {
+        material,
+        maps,
+        report,
+        parts: Vec::new(),
+    };
+    looks.read_color(&mut slot);
+    looks.read_roughness(&mut slot);
+    looks.read_normal(&mut slot);
+    match looks.texture("map_Ke", true) {
+        Picture::Found(texture) => {
+            *slot.texture_mut(TextureTarget::Emission) = Some(texture);
+            if slot.color("emission.color") == [0.0; 3] {
+                slot.set("emission.color", 1.0);
+            }
         }
+        Picture::Missing => slot.set("emission.color", 0.0),
+        Picture::Unnamed => {}
+    }
+    looks.maps.put(&looks.parts, &mut slot, looks.report);
+    table::report_unread(material, report);
+    report.note(
+        Fate::Approximated,
+        "a .mtl material, as metalness and roughness",
+        &material.name,
+    );
+    slot
+}
+
+/// Reader of a material's textures.
+struct Looks<'a, 'b> {
+    material: &'a Material,
+    maps: &'a mut Maps<'b>,
+    report: &'a mut ImportReport,
+    parts: Vec<Part>,
+}
+
+/// The number that a texel stands for.
+type Code = fn([u8; 4]) -> u8;
+
+impl Looks<'_, '_> {
+    fn note(&mut self, fate: Fate, what: impl Into<String>) {
+        self.report.note(fate, what, &self.material.name);
     }
 
-    /// The texture of a line of the library.
-    fn texture(&mut self, map: Option<&Map<'_>>, is_color: bool, report: &mut ImportReport) -> Picture {
-        let Some(map) = map else { return Picture::Unnamed };
+    /// The texture of a keyword.
+    fn texture(&mut self, keyword: &str, is_color: bool) -> Picture {
+        let Some(text) = self.material.text(keyword) else {
+            return Picture::Unnamed;
+        };
+        let map = Map::parse(text);
         for option in &map.ignored {
-            report.note(Fate::Ignored, format!("the option {option} of a texture"), map.name);
+            let what = format!("the option {option} of a texture");
+            self.report.note(Fate::Ignored, what, map.name);
         }
-        let known = self.textures.iter().position(|texture| texture.name == map.name);
-        let Some(texture) = known.or_else(|| self.read_picture(map.name, is_color, report)) else {
+        let Some(texture) = self.maps.image(&[map.name], None, is_color, self.report) else {
             return Picture::Missing;
         };
         Picture::Found(TextureRef {
@@ -336,27 +288,63 @@ impl<'a> Slots<'a> {
         })
     }
 
-    /// Adds a texture file to the model and returns its index.
-    fn read_picture(&mut self, name: &str, is_color: bool, report: &mut ImportReport) -> Option<usize> {
-        let budget = &self.files.import.budget;
-        let read = self.files.read(name).map_err(|error| error.to_string());
-        let scaled = read.and_then(|bytes| {
-            let (name, bytes) = (name.to_owned(), bytes.into());
-            let scaled = Encoded { name, bytes }.texture(is_color, self.side_max, budget)?;
-            let taken = budget.take(scaled.texture.bytes() as u64);
-            taken.map_err(|over| over.to_string()).map(|()| scaled)
-        });
-        match scaled {
-            Ok(scaled) => {
-                scaled.report(report);
-                self.textures.push(scaled.texture);
-                Some(self.textures.len() - 1)
-            }
-            Err(reason) => {
-                report.note(Fate::Missing, format!("a texture, grey instead ({reason})"), name);
-                None
+    /// The base colour map, and whether it has opacity.
+    fn read_color(&mut self, slot: &mut Slot) {
+        let color = self.texture("map_Kd", true);
+        if color != Picture::Unnamed && slot.color("base.color") == [0.0; 3] {
+            // Many exporters write black beside a texture and mean white.
+            slot.set("base.color", 1.0);
+        }
+        if color == Picture::Missing {
+            slot.multiply("base.color", [0.5; 3]);
+        }
+        let own = |texel: [u8; 4]| texel[3];
+        let color = color.found();
+        self.parts
+            .extend(color.map(|place| (TextureTarget::BaseColor, place, own as Code)));
+        let name = |key: &str| self.material.text(key).map(|text| Map::parse(text).name);
+        if name("map_d").is_some() && name("map_d") == name("map_Kd") {
+            slot.alpha_mode = AlphaMode::Blend;
+        } else if let Picture::Found(mask) = self.texture("map_d", false) {
+            let code = opacity_of(self.maps.get(mask.texture));
+            self.parts.push((TextureTarget::Opacity, mask, code));
+        }
+    }
+
+    fn read_roughness(&mut self, slot: &mut Slot) {
+        for (target, keyword, number, key) in [
+            (TextureTarget::Roughness, "map_Pr", "Pr", "specular.roughness"),
+            (TextureTarget::Metalness, "map_Pm", "Pm", "base.metalness"),
+        ] {
+            let Some(place) = self.texture(keyword, false).found() else {
+                continue;
+            };
+            self.parts.push((target, place, grey));
+            // A map without a number, or beside 0, is meant as it is.
+            if self.material.number(number).is_none_or(|number| number == 0.0) {
+                slot.set(key, 1.0);
             }
         }
+    }
+
+    fn read_normal(&mut self, slot: &mut Slot) {
+        let keyword = if self.material.text("norm").is_some() {
+            "norm"
+        } else {
+            "bump"
+        };
+        let Some(place) = self.texture(keyword, false).found() else {
+            return;
+        };
+        if holds_heights(self.maps.get(place.texture)) {
+            return self.note(Fate::Ignored, "a bump texture, which holds heights");
+        }
+        *slot.texture_mut(TextureTarget::Normal) = Some(place);
+        let strength = self
+            .material
+            .text(keyword)
+            .map_or(1.0, |text| Map::parse(text).strength);
+        slot.set("geometry.normal_strength", strength);
     }
 }
 
@@ -375,10 +363,4 @@ impl Picture {
             _ => None,
         }
     }
-}
-
-/// Whether a map is grey everywhere: a height map, not a normal map.
-fn is_height(texture: &Texture) -> bool {
-    let grey = |texel: &[u8; 4]| texel[0].abs_diff(texel[2]) < 8 && texel[1].abs_diff(texel[2]) < 8;
-    texture.rgba8.as_chunks::<4>().0.iter().all(grey)
 }

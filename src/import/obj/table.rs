@@ -1,7 +1,6 @@
 //! Fate of each keyword of a `.mtl` library: the table in docs/FORMATS.md, from which the import report is made.
 
-use tobj::Material;
-
+use super::lines::{Material, numbers};
 use crate::file_parameter::{FileParameter, Goes};
 use crate::file_parameters;
 use crate::scene::report::{Fate, ImportReport};
@@ -33,14 +32,14 @@ pub const MTL_PARAMETERS: &[FileParameter] = file_parameters! { "" {
     "anisor" = "0" "0.25" => nowhere "the turn of a stretched highlight (anisor)";
     "map_Kd" PICTURE => to "base.color_texture";
     "map_Ke" PICTURE => to "emission.color_texture";
-    "map_d" PICTURE => to "geometry.opacity_texture": "the alpha of `map_Kd`; another texture is ignored";
+    "map_d" PICTURE => to "geometry.opacity_texture": "the alpha of its image if it has one, else its grey";
+    "map_Pr" PICTURE => to "specular.roughness_texture";
+    "map_Pm" PICTURE => to "base.metalness_texture";
     "norm" PICTURE => to "geometry.normal_texture";
     "bump" PICTURE => to "geometry.normal_texture": "also `map_bump`; heights are ignored";
     "map_Ka" PICTURE => nowhere "a texture given by map_Ka";
     "map_Ks" PICTURE => nowhere "a texture given by map_Ks";
     "map_Ns" PICTURE => nowhere "a texture given by map_Ns";
-    "map_Pr" PICTURE => nowhere "a texture given by map_Pr";
-    "map_Pm" PICTURE => nowhere "a texture given by map_Pm";
     "map_Ps" PICTURE => nowhere "a texture given by map_Ps";
     "map_Pc" PICTURE => nowhere "a texture given by map_Pc";
     "map_Pcr" PICTURE => nowhere "a texture given by map_Pcr";
@@ -50,25 +49,26 @@ pub const MTL_PARAMETERS: &[FileParameter] = file_parameters! { "" {
 } };
 
 /// Illumination models that are shown as they are, or nearly: 2 is a highlight; 3, 5 and 8 reflect the scene besides.
-const SHOWN: [u8; 6] = [0, 1, 2, 3, 5, 8];
+const SHOWN: [f32; 6] = [0.0, 1.0, 2.0, 3.0, 5.0, 8.0];
 
 /// Reports a material's parameters that the table ignores or does not have, and values out of range.
 pub(super) fn report_unread(material: &Material, report: &mut ImportReport) {
     let mut note = |fate, what: String| report.note(fate, what, &material.name);
-    for (key, text) in keywords(material) {
+    for (key, text) in &material.lines {
         let Some(row) = MTL_PARAMETERS.iter().find(|row| row.place == key) else {
-            if !matches!(key, "map_bump" | "map_Bump") {
-                note(Fate::Ignored, format!("{key} of a .mtl material"));
-            }
+            note(Fate::Ignored, format!("{key} of a .mtl material"));
             continue;
         };
-        let numbers = numbers(&text);
+        let numbers = numbers(text);
         match (row.goes, row.range) {
             (Nowhere(what), _) if numbers.is_empty() || numbers != self::numbers(row.default) => {
                 note(Fate::Ignored, what.to_owned());
             }
-            (To(_), Some(_)) if numbers.is_empty() => {
-                note(Fate::Ignored, format!("{key} of a .mtl material, which is no number"));
+            (To(_), _) if numbers.is_empty() && row.example != PICTURE => {
+                note(
+                    Fate::Ignored,
+                    format!("{key} {text} of a .mtl material, which is no number"),
+                );
             }
             (To(_), Some([least, most])) if numbers.iter().any(|x| !(least..=most).contains(x)) => {
                 note(Fate::Approximated, format!("{key} beyond {least} to {most}"));
@@ -76,39 +76,13 @@ pub(super) fn report_unread(material: &Material, report: &mut ImportReport) {
             _ => {}
         }
     }
-    if material.specular.is_some_and(|color| color != [0.0; 3]) {
+    if material.color("Ks").is_some_and(|color| color != [0.0; 3]) {
         note(
             Fate::Approximated,
             "a colour of reflections (Ks), as the index has it".to_owned(),
         );
     }
-    if let Some(model) = material.illumination_model.filter(|model| !SHOWN.contains(model)) {
+    if let Some(model) = material.number("illum").filter(|model| !SHOWN.contains(model)) {
         note(Fate::Approximated, format!("illumination model {model}, as 2"));
     }
-}
-
-/// Keywords of a material with their text.
-fn keywords(material: &Material) -> Vec<(&str, String)> {
-    let color = |color: Option<[f32; 3]>| color.map(|[r, g, b]| format!("{r} {g} {b}"));
-    let number = |number: Option<f32>| number.map(|x| x.to_string());
-    let known = [
-        ("Ka", color(material.ambient)),
-        ("Kd", color(material.diffuse)),
-        ("Ke", color(material.emissive)),
-        ("Ni", number(material.optical_density)),
-        ("d", number(material.dissolve)),
-        ("map_Ka", material.ambient_texture.clone()),
-        ("map_Ks", material.specular_texture.clone()),
-        ("map_Ns", material.shininess_texture.clone()),
-    ];
-    let mut others: Vec<_> = material.unknown_param.iter().collect();
-    others.sort_unstable();
-    let known = known.into_iter().filter_map(|(key, text)| Some((key, text?)));
-    known
-        .chain(others.into_iter().map(|(key, text)| (key.as_str(), text.clone())))
-        .collect()
-}
-
-fn numbers(text: &str) -> Vec<f32> {
-    text.split_whitespace().map_while(|word| word.parse().ok()).collect()
 }

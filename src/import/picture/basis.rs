@@ -1,6 +1,6 @@
 //! Basis Universal, the texels of most KTX2 files, decoded by the basisu crate.
 
-use super::Decoded;
+use image::DynamicImage;
 
 /// Each of the faces, of the level of so many that `level_of` chooses for columns and rows.
 #[cfg(feature = "basis")]
@@ -8,7 +8,7 @@ pub(super) fn decode(
     bytes: &[u8],
     faces: usize,
     level_of: impl Fn([u32; 2], u32) -> u32,
-) -> Result<Vec<Decoded>, String> {
+) -> Result<Vec<DynamicImage>, String> {
     use basisu::{DecodeFlags, TargetFormat, Transcoder};
     /// Largest expansion in texels per byte, and additional texels.
     const GROWTH: [u64; 2] = [64, 1 << 20];
@@ -24,13 +24,7 @@ pub(super) fn decode(
     let face = |face: usize| {
         let (target, flags) = (TargetFormat::Rgba32, DecodeFlags::NONE);
         let codes = transcoder.transcode_image(level, 0, face as u32, target, flags);
-        let numbers = super::Numbers::Codes8(codes.map_err(text)?);
-        Ok(Decoded {
-            width,
-            height,
-            channels: 4,
-            numbers,
-        })
+        super::codes([width, height], 4, codes.map_err(text)?).ok_or_else(|| "it is cut short".to_owned())
     };
     (0..faces).map(face).collect()
 }
@@ -41,6 +35,6 @@ pub(super) fn decode(
     _bytes: &[u8],
     _faces: usize,
     _level_of: impl Fn([u32; 2], u32) -> u32,
-) -> Result<Vec<Decoded>, String> {
+) -> Result<Vec<DynamicImage>, String> {
     Err("this program was built without Basis Universal (the feature `basis`)".to_owned())
 }

@@ -1,8 +1,9 @@
 //! Decoding of models' texture maps, of any format.
 
 mod basis;
-mod float_tiff;
+mod bmp_runs;
 mod gpu;
+mod tiff_files;
 pub(crate) use gpu::is_container;
 
 use std::borrow::Cow;
@@ -12,7 +13,10 @@ use std::path::Path;
 
 use exr::meta::header::Header;
 use exr::prelude::{MetaData, ReadChannels, ReadLayers, ReadSpecificChannel, Vec2};
-use image::{DynamicImage, ImageDecoder as _, ImageError, ImageFormat, ImageReader, ImageResult, Limits};
+use image::metadata::Orientation;
+use image::{
+    DynamicImage, ImageBuffer, ImageDecoder as _, ImageError, ImageFormat, ImageReader, ImageResult, Limits, Rgba,
+};
 
 use crate::limits::{self, Budget};
 use crate::optics::primaries::{Chromaticities, Matrix, NoSpace, REC709, transformed};
@@ -36,22 +40,6 @@ const CONTAINER_COST: u64 = 8;
 const EXR: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 /// Largest side of an OpenEXR image, in pixels.
 const SIDE_MAX: usize = 1 << 15;
-
-/// A decoded image with the file's own values, row by row from the top.
-pub(super) struct Decoded {
-    pub width: u32,
-    pub height: u32,
-    /// Numbers of a texel: grey, or red, green and blue; then its opacity.
-    pub channels: usize,
-    pub numbers: Numbers,
-}
-
-pub(super) enum Numbers {
-    Codes8(Vec<u8>),
-    Codes16(Vec<u16>),
-    /// Linear for any use.
-    Light(Vec<f32>),
-}
 
 /// Why an image can't be decoded.
 #[derive(Debug)]
@@ -77,60 +65,90 @@ impl fmt::Display for Refusal {
     }
 }
 
-/// Red, green, blue and opacity of each texel.
-pub(super) fn rgba<T: Copy>(numbers: &[T], channels: usize, opaque: T) -> impl Iterator<Item = [T; 4]> {
-    numbers.chunks_exact(channels).map(move |texel| match *texel {
-        [grey] => [grey, grey, grey, opaque],
-        [grey, opacity] => [grey, grey, grey, opacity],
-        [r, g, b] => [r, g, b, opaque],
-        [r, g, b, a, ..] => [r, g, b, a],
-        [] => [opaque; 4],
-    })
+/// An image of 8-bit codes: grey, or red, green and blue, perhaps with an opacity. Too few are no image.
+fn codes(size: [u32; 2], channels: usize, codes: Vec<u8>) -> Option<DynamicImage> {
+    let [width, height] = size;
+    match channels {
+        1 => ImageBuffer::from_raw(width, height, codes).map(DynamicImage::ImageLuma8),
+        3 => ImageBuffer::from_raw(width, height, codes).map(DynamicImage::ImageRgb8),
+        _ => ImageBuffer::from_raw(width, height, codes).map(DynamicImage::ImageRgba8),
+    }
 }
 
-impl Decoded {
-    /// The texture map. Colours have 8 bits per channel in sRGB; others as many as the file, up to 16, because 8-bit steps
-    /// are visible in normals and small roughnesses. Colours of another space are brought to linear Rec. 709 by the matrix.
-    fn texture(self, name: String, is_color: bool, rec709_from: Option<Matrix>) -> Texture {
-        let (width, height, channels) = (self.width, self.height, self.channels);
-        let rgba16: Vec<u16> = match self.numbers {
-            Numbers::Codes8(codes) => {
-                let rgba8 = match channels {
-                    4 => codes,
-                    _ => rgba(&codes, channels, 255).flatten().collect(),
-                };
-                let rgba16 = Vec::new();
-                return Texture {
-                    name,
-                    width,
-                    height,
-                    rgba8,
-                    rgba16,
-                };
-            }
-            Numbers::Codes16(codes) => rgba(&codes, channels, u16::MAX).flatten().collect(),
-            Numbers::Light(numbers) => {
-                let code = |value: f64| (65535.0 * value).round().clamp(0.0, 65535.0) as u16;
-                let texel = |texel: [f32; 4]| {
-                    let [r, g, b, a] = texel.map(|x| if x.is_finite() { f64::from(x) } else { 0.0 });
-                    let [r, g, b] = if is_color {
-                        let [r, g, b] = rec709_from.map_or([r, g, b], |matrix| transformed(&matrix, [r, g, b]));
-                        srgb_from_linear(vec3(r, g, b)).to_f64()
-                    } else {
-                        [r, g, b]
-                    };
-                    [r, g, b, a].map(code)
-                };
-                rgba(&numbers, channels, 1.0).flat_map(texel).collect()
-            }
-        };
-        Texture {
-            name,
-            width,
-            height,
-            rgba8: rgba16.iter().copied().map(nearest_of_16).collect(),
-            rgba16: if is_color { Vec::new() } else { rgba16 },
+/// The same of numbers that are linear for any use.
+fn light(size: [u32; 2], channels: usize, numbers: Vec<f32>) -> Option<DynamicImage> {
+    let [width, height] = size;
+    let numbers = match channels {
+        1 => numbers.into_iter().flat_map(|grey| [grey; 3]).collect(),
+        2 => {
+            let texels = numbers.as_chunks::<2>().0.iter();
+            texels
+                .flat_map(|[grey, opacity]| [*grey, *grey, *grey, *opacity])
+                .collect()
         }
+        _ => numbers,
+    };
+    match channels % 2 {
+        1 => ImageBuffer::from_raw(width, height, numbers).map(DynamicImage::ImageRgb32F),
+        _ => ImageBuffer::from_raw(width, height, numbers).map(DynamicImage::ImageRgba32F),
+    }
+}
+
+/// Bytes of a channel: 1 and 2 of codes, 4 of linear numbers.
+pub(super) fn depth(picture: &DynamicImage) -> u8 {
+    let color = picture.color();
+    color.bytes_per_pixel() / color.channel_count()
+}
+
+/// An image whose texels are mapped: red, green, blue and opacity in [0, 1], or linear.
+fn mapped(picture: DynamicImage, texel: impl Fn([f32; 4]) -> [f32; 4]) -> DynamicImage {
+    let depth = depth(&picture);
+    let mut numbers = picture.into_rgba32f();
+    numbers.pixels_mut().for_each(|pixel| pixel.0 = texel(pixel.0));
+    let numbers = DynamicImage::from(numbers);
+    match depth {
+        1 => numbers.into_rgba8().into(),
+        2 => numbers.into_rgba16().into(),
+        _ => numbers,
+    }
+}
+
+/// The texture map. Colours have 8 bits per channel in sRGB; others as many as the file, up to 16, because 8-bit steps are
+/// visible in normals and small roughnesses. Colours of another space are brought to linear Rec. 709 by the matrix.
+fn texture(picture: DynamicImage, name: String, is_color: bool, rec709_from: Option<Matrix>) -> Texture {
+    let (width, height) = (picture.width(), picture.height());
+    let rgba16: Vec<u16> = match depth(&picture) {
+        1 => {
+            return Texture {
+                name,
+                width,
+                height,
+                rgba8: picture.into_rgba8().into_raw(),
+                rgba16: Vec::new(),
+            };
+        }
+        2 => picture.into_rgba16().into_raw(),
+        _ => {
+            let code = |value: f64| (65535.0 * value).round().clamp(0.0, 65535.0) as u16;
+            let texel = |texel: &Rgba<f32>| {
+                let [r, g, b, a] = texel.0.map(|x| if x.is_finite() { f64::from(x) } else { 0.0 });
+                let [r, g, b] = if is_color {
+                    let [r, g, b] = rec709_from.map_or([r, g, b], |matrix| transformed(&matrix, [r, g, b]));
+                    srgb_from_linear(vec3(r, g, b)).to_f64()
+                } else {
+                    [r, g, b]
+                };
+                [r, g, b, a].map(code)
+            };
+            picture.into_rgba32f().pixels().flat_map(texel).collect()
+        }
+    };
+    Texture {
+        name,
+        width,
+        height,
+        rgba8: rgba16.iter().copied().map(nearest_of_16).collect(),
+        rgba16: if is_color { Vec::new() } else { rgba16 },
     }
 }
 
@@ -177,23 +195,38 @@ impl Encoded<'_> {
 
     /// The texture map, if the import's budget permits.
     pub fn texture(self, is_color: bool, side_max: u32, budget: &Budget) -> Result<Scaled, String> {
-        let (texture, note) = self.whole(is_color, budget)?;
+        let (texture, note) = self.whole(is_color, false, budget)?;
         let (texture, from) = scaled_to(texture, side_max, is_color);
         Ok(Scaled { texture, from, note })
     }
 
-    /// The texture map at its own size, and a note if its colours are of no known space.
-    fn whole(self, is_color: bool, budget: &Budget) -> Result<(Texture, Option<&'static str>), String> {
+    /// The texture map at its own size, turned as a camera says of its photograph, or not; and a note if its colours are of
+    /// no known space.
+    fn whole(self, is_color: bool, is_photo: bool, budget: &Budget) -> Result<(Texture, Option<&'static str>), String> {
         check_growth(&self.name, &self.bytes)?;
         budget.check(self.cost()).map_err(|over| over.to_string())?;
-        let decoded = decode(&self.name, &self.bytes, [u32::MAX; 2]).map_err(|refusal| refusal.to_string())?;
-        let decoded = decoded.into_iter().next().ok_or("it has no texels")?;
+        let decoded =
+            decode(&self.name, &self.bytes, [u32::MAX; 2], is_photo).map_err(|refusal| refusal.to_string())?;
+        let mut decoded = decoded.into_iter().next().ok_or("it has no texels")?;
+        // Light of OpenEXR is multiplied by opacity, data are not.
+        if is_color && self.bytes.starts_with(&EXR) || tiff_files::is_premultiplied(&self.bytes) {
+            decoded = mapped(decoded, straight);
+        }
         let (rec709_from, note) = match rec709_from(&self.bytes) {
             Ok(matrix) => (matrix, None),
             Err(NoSpace) => (None, Some("colours of no known space, taken as linear Rec. 709")),
         };
-        let texture = decoded.texture(self.name, is_color, rec709_from);
+        let texture = texture(decoded, self.name, is_color, rec709_from);
         Ok((texture, note.filter(|_| is_color)))
+    }
+}
+
+/// A colour that opacity multiplies no more; one without opacity stays, for it is light.
+fn straight([r, g, b, a]: [f32; 4]) -> [f32; 4] {
+    if a > 0.0 {
+        [r / a, g / a, b / a, a]
+    } else {
+        [r, g, b, a]
     }
 }
 
@@ -219,7 +252,7 @@ fn header(name: &str, bytes: &[u8]) -> Option<(u64, bool)> {
         let size = meta.headers.first()?.layer_size;
         return Some((texels([size.0 as u64, size.1 as u64]), true));
     }
-    if let Some(size) = float_tiff::size(bytes) {
+    if let Some(size) = tiff_files::size(bytes) {
         return Some((texels(size.map(u64::from)), true));
     }
     let reader = reader(name, bytes).ok()?;
@@ -229,9 +262,11 @@ fn header(name: &str, bytes: &[u8]) -> Option<(u64, bool)> {
     Some((texels([width.into(), height.into()]), is_deep))
 }
 
-/// The texture map in a file, with sides of at most `side_max`, within the import's budget, which it takes from.
+/// The texture map in a file, turned as its camera says, with sides of at most `side_max`, within the import's budget, which
+/// it takes from.
 pub fn read_texture(path: &Path, is_color: bool, side_max: u32, budget: &Budget) -> Result<Texture, String> {
-    let texture = read_encoded(path, budget)?.texture(is_color, side_max, budget)?.texture;
+    let (texture, _) = read_encoded(path, budget)?.whole(is_color, true, budget)?;
+    let (texture, _) = scaled_to(texture, side_max, is_color);
     budget.take(texture.bytes() as u64).map_err(|over| over.to_string())?;
     Ok(texture)
 }
@@ -250,10 +285,36 @@ fn read_encoded(path: &Path, budget: &Budget) -> Result<Encoded<'static>, String
     Ok(Encoded { name, bytes })
 }
 
+/// What a texture map's numbers are on the whole, whatever they mean.
+#[derive(Clone, Copy, Debug)]
+pub struct FileMean {
+    pub mean: TextureMean,
+    /// All texels are the same.
+    pub is_even: bool,
+    /// Its numbers are colours of 8 bits, as screens take them.
+    pub is_of_screen: bool,
+}
+
 /// Mean of a texture map in a file, within the import's budget.
-pub fn mean_of_file(path: &Path, budget: &Budget) -> Result<TextureMean, String> {
-    let (texture, _) = read_encoded(path, budget)?.whole(true, budget)?;
-    Ok(texture_mean(&texture))
+pub fn mean_of_file(path: &Path, budget: &Budget) -> Result<FileMean, String> {
+    let encoded = read_encoded(path, budget)?;
+    let color = contained(|| {
+        Some(
+            reader(&encoded.name, &encoded.bytes)
+                .ok()?
+                .into_decoder()
+                .ok()?
+                .color_type(),
+        )
+    });
+    let is_colored = color.flatten().is_none_or(|color| color.has_color());
+    let (texture, _) = encoded.whole(false, true, budget)?;
+    let (texels, deep) = (texture.rgba8.as_chunks::<4>().0, texture.rgba16.as_chunks::<4>().0);
+    Ok(FileMean {
+        mean: texture_mean(&texture),
+        is_even: texels.iter().all(|texel| texel == &texels[0]) && deep.iter().all(|texel| texel == &deep[0]),
+        is_of_screen: is_colored && deep.is_empty(),
+    })
 }
 
 /// Colour space of an OpenEXR file: Rec. 709 by default.
@@ -277,18 +338,23 @@ fn rec709_from(bytes: &[u8]) -> Result<Option<Matrix>, NoSpace> {
 }
 
 /// Decodes an image of any known format, or the six faces of a cube (+X, −X, +Y, −Y, +Z, −Z). Containers of GPUs have it in
-/// several sizes: the largest within `side_max` (of an image, of a face) is read.
-pub(super) fn decode(name: &str, bytes: &[u8], side_max: [u32; 2]) -> Result<Vec<Decoded>, Refusal> {
+/// several sizes: the largest within `side_max` (of an image, of a face) is read. A photograph is turned as its camera says.
+pub(super) fn decode(
+    name: &str,
+    bytes: &[u8],
+    side_max: [u32; 2],
+    is_photo: bool,
+) -> Result<Vec<DynamicImage>, Refusal> {
     check_growth(name, bytes)?;
     // Some damaged files make decoders panic.
     let decoded = contained(|| {
         if gpu::is_container(bytes) {
             return gpu::decode(bytes, side_max);
         }
-        let decoded = match float_tiff::decode(bytes)? {
+        let decoded = match tiff_files::decode(bytes)? {
             Some(floats) => floats,
             None if bytes.starts_with(&EXR) => decode_exr(bytes)?,
-            None => decode_image(name, bytes)?,
+            None => decode_image(name, bytes, is_photo)?,
         };
         Ok(vec![decoded])
     });
@@ -296,34 +362,41 @@ pub(super) fn decode(name: &str, bytes: &[u8], side_max: [u32; 2]) -> Result<Vec
 }
 
 /// Decodes a display-referred format; the name decides if the bytes do not.
-fn decode_image(name: &str, bytes: &[u8]) -> Result<Decoded, Refusal> {
+fn decode_image(name: &str, bytes: &[u8], is_photo: bool) -> Result<DynamicImage, Refusal> {
     let refused = |error: ImageError| match error {
         ImageError::Unsupported(what) => Refusal::NotRead(what.to_string()),
         error => Refusal::Damaged(error.to_string()),
     };
+    let indexed = bmp_runs::indexed(bytes);
+    let (bytes, colors) = indexed
+        .as_ref()
+        .map_or((bytes, None), |(bytes, colors)| (bytes, Some(colors)));
     let mut reader = reader(name, bytes).map_err(refused)?;
+    let is_tga = reader.format() == Some(ImageFormat::Tga);
     let mut limits = Limits::default();
     limits.max_alloc = Some(DECODED_MAX);
-    reader.limits(limits);
-    let picture = reader.decode().map_err(refused)?;
-    let (width, height, color) = (picture.width(), picture.height(), picture.color());
-    let is_deep = color.bytes_per_pixel() > color.channel_count();
-    let is_light = matches!(picture, DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_));
-    let numbers = match (is_light, is_deep, color.has_alpha()) {
-        (true, _, true) => Numbers::Light(picture.into_rgba32f().into_raw()),
-        (true, _, false) => Numbers::Light(picture.into_rgb32f().into_raw()),
-        (_, true, true) => Numbers::Codes16(picture.into_rgba16().into_raw()),
-        (_, true, false) => Numbers::Codes16(picture.into_rgb16().into_raw()),
-        (_, _, true) => Numbers::Codes8(picture.into_rgba8().into_raw()),
-        (_, _, false) => Numbers::Codes8(picture.into_rgb8().into_raw()),
-    };
-    let channels = if color.has_alpha() { 4 } else { 3 };
-    Ok(Decoded {
-        width,
-        height,
-        channels,
-        numbers,
-    })
+    reader.limits(limits.clone());
+    let mut decoder = reader.into_decoder().map_err(refused)?;
+    limits.reserve(decoder.total_bytes()).map_err(refused)?;
+    let orientation = decoder.orientation().unwrap_or(Orientation::NoTransforms);
+    let mut picture = DynamicImage::from_decoder(decoder).map_err(refused)?;
+    if let (Some(colors), DynamicImage::ImageRgb8(texels)) = (colors, &mut picture) {
+        texels
+            .pixels_mut()
+            .for_each(|texel| texel.0 = colors.get(usize::from(texel.0[0])).copied().unwrap_or_default());
+    }
+    // A TGA that promises no bits of opacity (byte 17) may have a fourth byte all the same.
+    if let DynamicImage::ImageRgba8(texels) = &mut picture
+        && is_tga
+        && bytes.get(17).is_some_and(|bits| bits & 0xf == 0)
+        && texels.pixels().all(|texel| texel.0[3] == 0)
+    {
+        texels.pixels_mut().for_each(|texel| texel.0[3] = 255);
+    }
+    if is_photo {
+        picture.apply_orientation(orientation);
+    }
+    Ok(picture)
 }
 
 /// A reader by format; the name decides if the bytes do not.
@@ -347,7 +420,7 @@ fn put((width, texels): &mut Pixels, at: Vec2<usize>, rgba: [f32; 4]) {
 }
 
 /// The first layer with colours, or with luminance.
-fn decode_exr(bytes: &[u8]) -> Result<Decoded, String> {
+fn decode_exr(bytes: &[u8]) -> Result<DynamicImage, String> {
     let text = |error: exr::error::Error| error.to_string();
     let meta = MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(text)?;
     let is_large = |size: Vec2<usize>| size.0.max(size.1) > SIDE_MAX || 16 * size.area() as u64 > DECODED_MAX;
@@ -356,16 +429,25 @@ fn decode_exr(bytes: &[u8]) -> Result<Decoded, String> {
     }
     let empty = |size: Vec2<usize>| (size.width(), vec![0.0_f32; 4 * size.area()]);
     let layers = || exr::prelude::read().no_deep_data().largest_resolution_level();
-    let colors = layers()
-        .rgba_channels(
-            |size, _| empty(size),
-            |pixels: &mut Pixels, at, (r, g, b, a): (f32, f32, f32, f32)| put(pixels, at, [r, g, b, a]),
-        )
-        .first_valid_layer()
-        .all_attributes()
-        .non_parallel()
-        .from_buffered(Cursor::new(bytes))
-        .map(|image| (image.layer_data.size, image.layer_data.channel_data.pixels));
+    let colors = |[r, g, b, a]: [&'static str; 4]| {
+        layers()
+            .specific_channels()
+            .required(r)
+            .required(g)
+            .required(b)
+            .optional(a, 1.0)
+            .collect_pixels(
+                |size, _| empty(size),
+                |pixels: &mut Pixels, at, (r, g, b, a): (f32, f32, f32, f32)| put(pixels, at, [r, g, b, a]),
+            )
+            .first_valid_layer()
+            .all_attributes()
+            .non_parallel()
+            .from_buffered(Cursor::new(bytes))
+            .map(|image| (image.layer_data.size, image.layer_data.channel_data.pixels))
+    };
+    // Some programs write the names in lower case.
+    let lower = |_| colors(["r", "g", "b", "a"]);
     let grey = |_| {
         layers()
             .specific_channels()
@@ -380,11 +462,7 @@ fn decode_exr(bytes: &[u8]) -> Result<Decoded, String> {
             .from_buffered(Cursor::new(bytes))
             .map(|image| (image.layer_data.size, image.layer_data.channel_data.pixels))
     };
-    let (size, (_, texels)) = colors.or_else(grey).map_err(text)?;
-    Ok(Decoded {
-        width: size.width() as u32,
-        height: size.height() as u32,
-        channels: 4,
-        numbers: Numbers::Light(texels),
-    })
+    let found = colors(["R", "G", "B", "A"]).or_else(lower).or_else(grey);
+    let (size, (_, texels)) = found.map_err(text)?;
+    light([size.width() as u32, size.height() as u32], 4, texels).ok_or_else(|| "it has no texels".to_owned())
 }

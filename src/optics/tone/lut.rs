@@ -5,6 +5,8 @@ use crate::optics::vector::{Vec3, vec3};
 /// A table over one or three channels of codes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lut {
+    /// A table that codes go through first.
+    pub before: Option<Box<Lut>>,
     /// Entries along each side, at least 2.
     pub size: usize,
     /// True for a curve per channel, false for a cube with red varying fastest.
@@ -20,7 +22,11 @@ impl Lut {
     pub fn apply(&self, codes: Vec3<f32>) -> Vec3<f32> {
         let last = (self.size - 1) as f32;
         let [low, high] = self.domain;
-        let codes = codes.to_f32();
+        let codes = self
+            .before
+            .as_ref()
+            .map_or(codes, |before| before.apply(codes))
+            .to_f32();
         let place = |i: usize| {
             let share = (codes[i] - low[i]) / (high[i] - low[i]);
             // NaN counts as the lowest input.

@@ -32,7 +32,7 @@ pub fn write(subject: &Subject, path: &Path) -> Result<Written, ExchangeError> {
     }
     Ok(Written {
         bytes,
-        beside: None,
+        beside: Vec::new(),
         materials: vec![report(material, &cells)],
     })
 }

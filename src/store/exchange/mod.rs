@@ -107,14 +107,14 @@ macro_rules! registered {
 pub static FORMATS: &[Registered] = registered! {
     "glossmith" "Glossmith" ["json", "png"], Documents native::write, Some(native::read),
         "Glossmith's own materials and projects; images with a document inside are read.";
-    "materialx" "MaterialX, OpenPBR" ["mtlx"], Materials |subject, _| materialx::write(subject, false), Some(materialx::read),
+    "materialx" "MaterialX, OpenPBR" ["mtlx"], Materials |subject, path| materialx::write(subject, path, false), Some(materialx::read),
         "MaterialX 1.39 with an OpenPBR surface.";
-    "standard-surface" "MaterialX, Standard Surface" ["mtlx"], Materials |subject, _| materialx::write(subject, true), Some(materialx::read),
+    "standard-surface" "MaterialX, Standard Surface" ["mtlx"], Materials |subject, path| materialx::write(subject, path, true), Some(materialx::read),
         "MaterialX 1.39 with a standard_surface.";
     "gltf" "glTF" ["glb", "gltf"], Model gltf::write, Some(gltf::read),
         "glTF 2.0: a project's model with its materials and textures, or a ball with the material.";
     "usd" "USD" ["usda"], Materials usd::write, Some(usd::read),
-        "USD as text, with UsdPreviewSurface, which is read, and an OpenPBR surface of MaterialX.";
+        "USD as text, with UsdPreviewSurface and an OpenPBR surface of MaterialX, which are read.";
     "mitsuba" "Mitsuba 3" ["xml"], Materials mitsuba::write, Some(carried::in_comments),
         "A scene for Mitsuba 3: a ball with the material. Read are the exact parameters alone.";
     "blender" "Blender" ["py"], Materials blender::write, Some(carried::in_comments),
@@ -161,8 +161,8 @@ pub struct Subject {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Written {
     pub bytes: Vec<u8>,
-    /// A file beside it that it refers to, by its name.
-    pub beside: Option<(String, Vec<u8>)>,
+    /// Files beside it that it refers to, by their names.
+    pub beside: Vec<(String, Vec<u8>)>,
     /// What became of each material.
     pub materials: Vec<MaterialReport>,
 }
@@ -233,7 +233,7 @@ impl Written {
     fn text(text: String, materials: Vec<MaterialReport>) -> Self {
         Self {
             bytes: text.into_bytes(),
-            beside: None,
+            beside: Vec::new(),
             materials,
         }
     }
@@ -360,7 +360,7 @@ impl Prepared {
     /// Writes the file, replacing it at once.
     pub fn save(&self) -> Result<(), FileError> {
         let path = &self.report.output;
-        if let Some((name, bytes)) = &self.written.beside {
+        for (name, bytes) in &self.written.beside {
             save_atomically(&path.with_file_name(name), bytes)?;
         }
         save_atomically(path, &self.written.bytes)
@@ -371,6 +371,10 @@ impl Prepared {
 pub fn prepare(subject: &Subject, input: &str, path: &Path, format: &Registered) -> Result<Prepared, ExchangeError> {
     let mut written = (format.write)(subject, path)?;
     for (report, losses) in written.materials.iter_mut().zip(&subject.losses) {
+        // What was lost before is not all there.
+        report
+            .entries
+            .retain(|entry| losses.is_empty() || *entry != Entry::exact(report::EVERYTHING));
         report.entries.splice(0..0, losses.iter().cloned());
     }
     let report = Report {

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::report::{Entry, MaterialReport};
+use super::report::{EVERYTHING, Entry, MaterialReport};
 use super::{ExchangeError, ReadOptions, Subject, Written};
 use crate::store::opened::{self, Opened};
 use crate::store::preset::material_text;
@@ -17,7 +17,7 @@ pub fn write(subject: &Subject, path: &Path) -> Result<Written, ExchangeError> {
         Some(document) if subject.materials.len() > 1 => own_text(path, document)?,
         _ => material_text(path, subject.only(path)?),
     };
-    let report = |material| MaterialReport::of(material, vec![Entry::exact("everything")]);
+    let report = |material| MaterialReport::of(material, vec![Entry::exact(EVERYTHING)]);
     Ok(Written::text(text, subject.materials.iter().map(report).collect()))
 }
 

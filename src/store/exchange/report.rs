@@ -31,6 +31,12 @@ impl Outcome {
     }
 }
 
+/// The textures that a user put on a material.
+pub const OWN_TEXTURES: &str = "textures of your own";
+
+/// All parts of a material.
+pub const EVERYTHING: &str = "everything";
+
 /// A part of a material and what became of it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Entry {

@@ -1,6 +1,6 @@
 //! A material as other programs know it: microfacets with GGX over a diffuse or refracting base, under a coat.
 
-use super::report::{Entry, Residual};
+use super::report::{Entry, OWN_TEXTURES, Residual};
 use crate::document::import::ggx_under_texture;
 use crate::document::{CoatLobe, ImportLobe, MaterialSettings, PARAMETERS, TextureUse, parameter};
 use crate::matching::{lobe_of_material, nearest_ggx};
@@ -353,7 +353,7 @@ impl Surface {
         layer(
             has_own && !takes.has("base.color_texture"),
             "base.color_texture",
-            "textures of your own",
+            OWN_TEXTURES,
             "convert to a glTF model to take them along",
         );
         entries.extend(self.coat_losses(material, takes));

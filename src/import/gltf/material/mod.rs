@@ -202,6 +202,11 @@ impl<'a> Materials<'a> {
                 self.report.note(Fate::Approximated, mean.what, &slots[mean.slot].name);
             }
         }
+        for slot in slots.iter_mut().filter(|slot| is_beyond(slot.number("specular.ior"))) {
+            let what = "an index of refraction above 4, as metalness";
+            self.report.note(Fate::Approximated, what, &slot.name);
+            make_metal(slot);
+        }
         let made = parallel::map_each(&self.made, |made| {
             (made.make)(made.images.map(|image| decoded.get(&image?)))
         });
@@ -445,8 +450,11 @@ impl<'a> Materials<'a> {
     /// Index of refraction, transmission and absorption.
     fn read_interior(&mut self, raw: &Json, read: &mut Slot) {
         let ior = read.number("specular.ior");
-        // 0 means a mirror.
-        let shown = if ior == 0.0 { IOR_MAX } else { ior.clamp(1.0, IOR_MAX) };
+        if is_beyond(ior) {
+            // Converted at the end, with the means of textures.
+            return;
+        }
+        let shown = ior.max(1.0);
         if shown != ior {
             let what = format!("an index of refraction of {ior}, taken as {shown}");
             self.report.note(Fate::Approximated, what, &read.name);
@@ -517,6 +525,33 @@ fn mean_strength(length: f32) -> f32 {
         whole if whole > 1.0 - STEP => 1.0,
         part => part,
     }
+}
+
+/// Whether an index of refraction is above what a material takes; 0 is infinite.
+fn is_beyond(ior: f32) -> bool {
+    ior == 0.0 || ior > IOR_MAX
+}
+
+/// A dielectric of so high an index, which reflects as a metal of its specular colour, as far as it is none yet.
+fn make_metal(slot: &mut Slot) {
+    let (ior, metalness) = (slot.number("specular.ior"), slot.number("base.metalness"));
+    let reflectance = if ior == 0.0 {
+        1.0
+    } else {
+        ((ior - 1.0) / (ior + 1.0)).powi(2)
+    };
+    let share = reflectance * slot.number("specular.weight");
+    let specular = slot
+        .color("specular.color")
+        .map(|factor| (share * factor).clamp(0.0, 1.0));
+    let own = slot.color("base.color");
+    let converted = convert(own, specular, 0.0);
+    let mix = |own: f32, other: f32| other + metalness * (own - other);
+    slot.set_color("base.color", [0, 1, 2].map(|i| mix(own[i], converted.base_color[i])));
+    slot.set("base.metalness", mix(1.0, converted.metalness));
+    slot.set("specular.ior", 1.5);
+    slot.set("specular.weight", 1.0);
+    slot.set("specular.color", 1.0);
 }
 
 /// An unlit material: it emits its colour and reflects nothing.

@@ -36,7 +36,7 @@ pub const GLTF_PARAMETERS: &[FileParameter] = file_parameters! {
         "emissiveStrength" = "1" "3" => to "emission.strength";
     }
     "/extensions/KHR_materials_ior/" {
-        "ior" = "1.5" "1.25" => to "specular.ior": "from 1 to 4; 0 is taken as 4";
+        "ior" = "1.5" "1.25" => to "specular.ior": "from 1 to 4; above, or 0, which is infinite, as a metal with the specular colour";
     }
     "/extensions/KHR_materials_specular/" {
         "specularFactor" = "1" "0.25" => to "specular.weight, without metals";
@@ -154,8 +154,9 @@ pub(super) fn keep(material: &Json, read: &mut Slot, report: &mut ImportReport) 
         if weight.is_none_or(|weight| weight == [0.0; 3]) {
             continue;
         }
-        let mut note = |what: &str| report.note(Fate::Ignored, format!("{what}, kept in the material"), &read.name);
-        note(&extension.replace('_', " "));
+        let mut note = |what: &str| report.note(Fate::Ignored, what, &read.name);
+        let what = extension.replace('_', " ");
+        note(&format!("{what}, which is not shown, but kept in the material"));
         for row in GLTF_PARAMETERS.iter().filter(|row| row.place.starts_with(&place)) {
             match (row.goes, material.pointer(row.place)) {
                 (Goes::Kept(""), Some(_)) => note("textures of what is not shown"),

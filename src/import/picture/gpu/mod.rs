@@ -8,10 +8,12 @@ use std::io::Read;
 
 use ddsfile::{Caps2, D3DFormat, Dds, MiscFlag};
 use half::f16;
+use image::DynamicImage;
+use image::metadata::Orientation;
 use ruzstd::StreamingDecoder;
 
 use self::masks::Masks;
-use super::{Decoded, Numbers, Refusal, basis};
+use super::{Refusal, basis, codes, light, mapped};
 
 /// The first bytes of a KTX2 file.
 const KTX2: [u8; 12] = *b"\xabKTX 20\xbb\r\n\x1a\n";
@@ -25,7 +27,7 @@ const ZSTD_GROWTH: [u64; 2] = [4096, 1 << 20];
 const SIDE_MAX: u32 = 1 << 16;
 
 /// Layout of texels.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy)]
 enum Layout {
     /// Bytes per texel, and positions of red, green, blue and opacity in it; 255 for a missing one.
     Bytes(usize, [u8; 4]),
@@ -41,23 +43,10 @@ enum Layout {
     SharedExponent,
     /// 11, 11 and 10 bits with a point.
     SmallFloats,
-    /// Blocks of 4 × 4 texels in so many bytes.
-    Blocks(Block, usize),
-}
-
-/// Block compression formats.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Block {
-    Bc1,
-    Bc2,
-    Bc3,
-    /// BC3 with red in the opacity channel.
-    Rxgb,
-    /// BC4; true for signed values.
-    Bc4(bool),
-    Bc5(bool),
-    Bc6h(bool),
-    Bc7,
+    /// Blocks of 4 × 4 texels: bytes a block, channels, and what decodes it.
+    Blocks(usize, usize, fn(&[u8], &mut [u8], usize)),
+    /// The same of linear red, green and blue: BC6H, perhaps signed.
+    LightBlocks(bool),
 }
 
 const GREY: Layout = Layout::Bytes(1, [0, 0, 0, 255]);
@@ -65,28 +54,19 @@ const RED_GREEN: Layout = Layout::Bytes(2, [0, 1, 255, 255]);
 const RGB: Layout = Layout::Bytes(3, [0, 1, 2, 255]);
 const BGR: Layout = Layout::Bytes(3, [2, 1, 0, 255]);
 const RGBA: Layout = Layout::Bytes(4, [0, 1, 2, 3]);
-const RGBX: Layout = Layout::Bytes(4, [0, 1, 2, 255]);
 const BGRA: Layout = Layout::Bytes(4, [2, 1, 0, 3]);
 const BGRX: Layout = Layout::Bytes(4, [2, 1, 0, 255]);
-const BC1: Layout = Layout::Blocks(Block::Bc1, 8);
-const BC2: Layout = Layout::Blocks(Block::Bc2, 16);
-const BC3: Layout = Layout::Blocks(Block::Bc3, 16);
-const BC7: Layout = Layout::Blocks(Block::Bc7, 16);
+const BC1: Layout = Layout::Blocks(8, 4, bcdec_rs::bc1);
+const BC2: Layout = Layout::Blocks(16, 4, bcdec_rs::bc2);
+const BC3: Layout = Layout::Blocks(16, 4, bcdec_rs::bc3);
+const BC4: Layout = Layout::Blocks(8, 1, |block, texels, pitch| bcdec_rs::bc4(block, texels, pitch, false));
+const SIGNED_BC4: Layout = Layout::Blocks(8, 1, |block, texels, pitch| bcdec_rs::bc4(block, texels, pitch, true));
+const BC5: Layout = Layout::Blocks(16, 2, |block, texels, pitch| bcdec_rs::bc5(block, texels, pitch, false));
+const SIGNED_BC5: Layout = Layout::Blocks(16, 2, |block, texels, pitch| bcdec_rs::bc5(block, texels, pitch, true));
+const BC7: Layout = Layout::Blocks(16, 4, bcdec_rs::bc7);
 
 const fn masks(bytes: usize, channels: [u32; 4]) -> Layout {
     Layout::Masks(Masks { bytes, channels })
-}
-
-const fn bc4(is_signed: bool) -> Layout {
-    Layout::Blocks(Block::Bc4(is_signed), 8)
-}
-
-const fn bc5(is_signed: bool) -> Layout {
-    Layout::Blocks(Block::Bc5(is_signed), 16)
-}
-
-const fn bc6h(is_signed: bool) -> Layout {
-    Layout::Blocks(Block::Bc6h(is_signed), 16)
 }
 
 /// The layout of a KTX2 file, by Vulkan's number of its format.
@@ -115,9 +95,11 @@ fn of_vulkan(format: u32) -> Option<Layout> {
         131..=134 => BC1,
         135 | 136 => BC2,
         137 | 138 => BC3,
-        139 | 140 => bc4(format == 140),
-        141 | 142 => bc5(format == 142),
-        143 | 144 => bc6h(format == 144),
+        139 => BC4,
+        140 => SIGNED_BC4,
+        141 => BC5,
+        142 => SIGNED_BC5,
+        143 | 144 => Layout::LightBlocks(format == 144),
         145 | 146 => BC7,
         _ => return None,
     })
@@ -126,16 +108,10 @@ fn of_vulkan(format: u32) -> Option<Layout> {
 /// The layout of a DDS file: by DXGI's number of its format, or by that of Direct3D 9.
 fn of_dds(dds: &Dds) -> Option<Layout> {
     if dds.header.spf.fourcc.as_ref().is_some_and(|code| code.0 == RXGB) {
-        return Some(Layout::Blocks(Block::Rxgb, 16));
+        return Some(Layout::Blocks(16, 4, rxgb));
     }
     if let Some(format) = dds.get_d3d_format() {
         return Some(match format {
-            D3DFormat::L8 => GREY,
-            D3DFormat::R8G8B8 => BGR,
-            D3DFormat::A8R8G8B8 => BGRA,
-            D3DFormat::X8R8G8B8 => BGRX,
-            D3DFormat::A8B8G8R8 => RGBA,
-            D3DFormat::X8B8G8R8 => RGBX,
             D3DFormat::L16 => Layout::Shorts(1),
             D3DFormat::G16R16 => Layout::Shorts(2),
             D3DFormat::A16B16G16R16 => Layout::Shorts(4),
@@ -172,16 +148,16 @@ fn of_dds(dds: &Dds) -> Option<Layout> {
         71 | 72 => BC1,
         74 | 75 => BC2,
         77 | 78 => BC3,
-        80 => bc4(false),
-        81 => bc4(true),
-        83 => bc5(false),
-        84 => bc5(true),
+        80 => BC4,
+        81 => SIGNED_BC4,
+        83 => BC5,
+        84 => SIGNED_BC5,
         85 => masks(2, [0xf800, 0x7e0, 0x1f, 0]),
         86 => masks(2, [0x7c00, 0x3e0, 0x1f, 0x8000]),
         87 | 91 => BGRA,
         88 | 93 => BGRX,
-        95 => bc6h(false),
-        96 => bc6h(true),
+        95 => Layout::LightBlocks(false),
+        96 => Layout::LightBlocks(true),
         98 | 99 => BC7,
         115 => masks(2, [0xf00, 0xf0, 0xf, 0xf000]),
         _ => return None,
@@ -195,11 +171,13 @@ pub(crate) fn is_container(bytes: &[u8]) -> bool {
 
 /// The image, or the six faces of the cube (+X, −X, +Y, −Y, +Z, −Z), at the largest level within `side_max` (of an image, of
 /// a face), or the smallest level.
-pub(super) fn decode(bytes: &[u8], side_max: [u32; 2]) -> Result<Vec<Decoded>, Refusal> {
+pub(super) fn decode(bytes: &[u8], side_max: [u32; 2]) -> Result<Vec<DynamicImage>, Refusal> {
     if bytes.starts_with(&DDS) {
         return decode_dds(bytes, side_max);
     }
-    Ktx2::read(bytes).ok_or("its header is cut short")?.decode(side_max)
+    let file = Ktx2::read(bytes).ok_or("its header is cut short")?;
+    let images = file.decode(side_max)?;
+    Ok(images.into_iter().map(|image| file.arranged(image)).collect())
 }
 
 /// The level at which both sides are at most so long; else the last.
@@ -234,7 +212,7 @@ impl<'a> Ktx2<'a> {
         })
     }
 
-    fn decode(&self, side_max: [u32; 2]) -> Result<Vec<Decoded>, Refusal> {
+    fn decode(&self, side_max: [u32; 2]) -> Result<Vec<DynamicImage>, Refusal> {
         let faces = if self.faces == 6 { 6 } else { 1 };
         let side_max = side_max[usize::from(faces == 6)];
         if self.width == 0 || self.width.max(self.height) > SIDE_MAX {
@@ -252,7 +230,44 @@ impl<'a> Ktx2<'a> {
         let size = layout.bytes(width, height).ok_or("it is too large")?;
         let level = self.level(level, size * faces).ok_or("it is damaged")?;
         let faces = level.chunks_exact(size).take(faces);
-        Ok(faces.map(|bytes| layout.image(width, height, bytes)).collect())
+        let faces: Option<_> = faces.map(|bytes| layout.image([width, height], bytes)).collect();
+        faces.ok_or_else(|| "it is damaged".into())
+    }
+
+    /// The value of a key, which is a text (KTX 2.0, "Key/Value Data").
+    fn value(&self, key: &str) -> &'a [u8] {
+        let number = |at: usize| Some(u32::from_le_bytes(self.bytes.get(at..at + 4)?.try_into().ok()?) as usize);
+        let found = || {
+            let values = self.bytes.get(number(56)?..)?.get(..number(60)?)?;
+            let (key, mut places) = (format!("{key}\0"), values.windows(key.len() + 1));
+            let start = places.position(|place| place == key.as_bytes())? + key.len();
+            values[start..].split(|byte| *byte == 0).next()
+        };
+        found().unwrap_or_default()
+    }
+
+    /// The image with its channels as `KTXswizzle` says, and its first texel at the top left: `KTXorientation` names where
+    /// columns and rows go, right and down (`rd`) if it is not there. A cube always has that.
+    fn arranged(&self, mut image: DynamicImage) -> DynamicImage {
+        if let [r, g, b, a] = *self.value("KTXswizzle") {
+            image = mapped(image, |texel| {
+                [r, g, b, a].map(|channel| match channel {
+                    b'r' => texel[0],
+                    b'g' => texel[1],
+                    b'b' => texel[2],
+                    b'a' => texel[3],
+                    b'0' => 0.0,
+                    _ => 1.0,
+                })
+            });
+        }
+        let directions = self.value("KTXorientation");
+        for (direction, turn) in [(b'l', Orientation::FlipHorizontal), (b'u', Orientation::FlipVertical)] {
+            if self.faces != 6 && directions.contains(&direction) {
+                image.apply_orientation(turn);
+            }
+        }
+        image
     }
 
     /// The first `size` bytes of a level, decompressed.
@@ -277,7 +292,7 @@ impl<'a> Ktx2<'a> {
     }
 }
 
-fn decode_dds(bytes: &[u8], side_max: [u32; 2]) -> Result<Vec<Decoded>, Refusal> {
+fn decode_dds(bytes: &[u8], side_max: [u32; 2]) -> Result<Vec<DynamicImage>, Refusal> {
     let dds = Dds::read(bytes).map_err(|error| error.to_string())?;
     let (width, height, levels) = (dds.get_width(), dds.get_height(), dds.get_num_mipmap_levels());
     if width == 0 || height == 0 || width.max(height) > SIDE_MAX {
@@ -307,9 +322,9 @@ fn decode_dds(bytes: &[u8], side_max: [u32; 2]) -> Result<Vec<Decoded>, Refusal>
     let [width, height] = [width, height].map(|side| (side >> level).max(1));
     let face = |face: usize| {
         let bytes = dds.data.get(face * whole + before..)?.get(..size)?;
-        Some(layout.image(width, height, bytes))
+        layout.image([width, height], bytes)
     };
-    let faces: Option<Vec<Decoded>> = (0..if is_cube { 6 } else { 1 }).map(face).collect();
+    let faces: Option<_> = (0..if is_cube { 6 } else { 1 }).map(face).collect();
     faces.ok_or_else(|| "it is cut short".into())
 }
 
@@ -321,58 +336,59 @@ impl Layout {
             Self::Shorts(channels) | Self::Halves(channels) => (1, 2 * channels),
             Self::Floats(channels) => (1, 4 * channels),
             Self::SharedExponent | Self::SmallFloats => (1, 4),
-            Self::Blocks(_, size) => (4, size),
+            Self::Blocks(size, ..) => (4, size),
+            Self::LightBlocks(_) => (4, 16),
         };
         let [columns, rows] = [width, height].map(|texels| texels.div_ceil(side) as usize);
         columns.checked_mul(rows)?.checked_mul(size)
     }
 
     /// Decodes an image from exactly the bytes that it needs.
-    fn image(self, width: u32, height: u32, bytes: &[u8]) -> Decoded {
-        let (channels, numbers) = match self {
-            Self::Bytes(size, places) => {
+    fn image(self, size: [u32; 2], bytes: &[u8]) -> Option<DynamicImage> {
+        let shorts = || bytes.as_chunks().0.iter();
+        match self {
+            Self::Bytes(count, places) => {
                 let channel = |texel: &[u8], place: u8| texel.get(usize::from(place)).copied().unwrap_or(255);
                 let rgba = |texel: &[u8]| places.map(|place| channel(texel, place));
-                (4, Numbers::Codes8(bytes.chunks_exact(size).flat_map(rgba).collect()))
+                codes(size, 4, bytes.chunks_exact(count).flat_map(rgba).collect())
             }
-            Self::Masks(masks) => (4, Numbers::Codes8(masks.codes(bytes))),
+            Self::Masks(masks) => codes(size, 4, masks.codes(bytes)),
             Self::Shorts(channels) => {
-                let fraction = |[low, high]: &[u8; 2]| f32::from(u16::from_le_bytes([*low, *high])) / 65535.0;
-                light(channels, bytes.as_chunks().0.iter().map(fraction).collect())
+                let fraction = |pair: &[u8; 2]| f32::from(u16::from_le_bytes(*pair)) / 65535.0;
+                linear(size, channels, shorts().map(fraction).collect())
             }
             Self::Halves(channels) => {
-                let number = |[low, high]: &[u8; 2]| f16::from_le_bytes([*low, *high]).to_f32();
-                light(channels, bytes.as_chunks().0.iter().map(number).collect())
+                let number = |pair: &[u8; 2]| f16::from_le_bytes(*pair).to_f32();
+                linear(size, channels, shorts().map(number).collect())
             }
             Self::Floats(channels) => {
                 let number = |bytes: &[u8; 4]| f32::from_le_bytes(*bytes);
-                light(channels, bytes.as_chunks().0.iter().map(number).collect())
+                linear(size, channels, bytes.as_chunks().0.iter().map(number).collect())
             }
-            Self::SharedExponent => light(3, words(bytes).flat_map(shared_exponent).collect()),
-            Self::SmallFloats => light(3, words(bytes).flat_map(small_floats).collect()),
-            Self::Blocks(block, size) => {
-                let blocks = Blocks {
-                    width,
-                    height,
-                    bytes: bytes.chunks_exact(size),
+            Self::SharedExponent => light(size, 3, words(bytes).flat_map(shared_exponent).collect()),
+            Self::SmallFloats => light(size, 3, words(bytes).flat_map(small_floats).collect()),
+            Self::Blocks(count, channels, decode) => {
+                let texels = blocks(size, channels, bytes.chunks_exact(count), decode);
+                match channels {
+                    2 => codes(size, 3, with_blue(&texels, 255)),
+                    _ => codes(size, channels, texels),
+                }
+            }
+            Self::LightBlocks(is_signed) => {
+                let decode = |block: &[u8], texels: &mut [f32], pitch| {
+                    bcdec_rs::bc6h_float(block, texels, pitch, is_signed);
                 };
-                block.numbers(blocks)
+                light(size, 3, blocks(size, 3, bytes.chunks_exact(16), decode))
             }
-        };
-        Decoded {
-            width,
-            height,
-            channels,
-            numbers,
         }
     }
 }
 
 /// Linear numbers: two channels are red and green.
-fn light(channels: usize, numbers: Vec<f32>) -> (usize, Numbers) {
+fn linear(size: [u32; 2], channels: usize, numbers: Vec<f32>) -> Option<DynamicImage> {
     match channels {
-        2 => (3, Numbers::Light(with_blue(&numbers, 1.0))),
-        _ => (channels, Numbers::Light(numbers)),
+        2 => light(size, 3, with_blue(&numbers, 1.0)),
+        _ => light(size, channels, numbers),
     }
 }
 
@@ -385,66 +401,35 @@ fn with_blue<T: Copy>(numbers: &[T], blue: T) -> Vec<T> {
         .collect()
 }
 
-impl Block {
-    /// Channels of a texel, and the numbers of all.
-    fn numbers(self, blocks: Blocks<'_>) -> (usize, Numbers) {
-        match self {
-            Self::Bc1 => (4, Numbers::Codes8(blocks.decoded(4, bcdec_rs::bc1))),
-            Self::Bc2 => (4, Numbers::Codes8(blocks.decoded(4, bcdec_rs::bc2))),
-            Self::Bc3 => (4, Numbers::Codes8(blocks.decoded(4, bcdec_rs::bc3))),
-            Self::Rxgb => {
-                let mut codes = blocks.decoded(4, bcdec_rs::bc3);
-                codes
-                    .as_chunks_mut()
-                    .0
-                    .iter_mut()
-                    .for_each(|[red, _, _, opacity]| *red = std::mem::replace(opacity, 255));
-                (4, Numbers::Codes8(codes))
-            }
-            Self::Bc4(is_signed) => {
-                let codes = blocks.decoded(1, |block, texels, pitch| bcdec_rs::bc4(block, texels, pitch, is_signed));
-                (1, Numbers::Codes8(codes))
-            }
-            Self::Bc5(is_signed) => {
-                let codes = blocks.decoded(2, |block, texels, pitch| bcdec_rs::bc5(block, texels, pitch, is_signed));
-                (3, Numbers::Codes8(with_blue(&codes, 255)))
-            }
-            Self::Bc6h(is_signed) => {
-                let numbers = blocks.decoded(3, |block, texels, pitch| {
-                    bcdec_rs::bc6h_float(block, texels, pitch, is_signed)
-                });
-                (3, Numbers::Light(numbers))
-            }
-            Self::Bc7 => (4, Numbers::Codes8(blocks.decoded(4, bcdec_rs::bc7))),
-        }
+/// BC3 with red in the opacity channel.
+fn rxgb(block: &[u8], texels: &mut [u8], pitch: usize) {
+    bcdec_rs::bc3(block, texels, pitch);
+    for [red, _, _, opacity] in texels.as_chunks_mut().0 {
+        *red = std::mem::replace(opacity, 255);
     }
 }
 
-/// Blocks of 4 × 4 texels, row by row.
-struct Blocks<'a> {
-    width: u32,
-    height: u32,
-    bytes: std::slice::ChunksExact<'a, u8>,
-}
-
-impl Blocks<'_> {
-    /// The texels row by row, the channels of each together; those beyond the image are skipped.
-    fn decoded<T: Copy + Default>(self, channels: usize, decode: impl Fn(&[u8], &mut [T], usize)) -> Vec<T> {
-        let (width, height) = (self.width as usize, self.height as usize);
-        let (across, pitch) = (width.div_ceil(4), 4 * channels);
-        let mut texels = vec![T::default(); width * height * channels];
-        let mut decoded = vec![T::default(); 4 * pitch];
-        for (number, block) in self.bytes.enumerate() {
-            decode(block, &mut decoded, pitch);
-            let (left, top) = (number % across * 4, number / across * 4);
-            let columns = (width - left).min(4) * channels;
-            for (row, line) in decoded.chunks_exact(pitch).enumerate().take(height - top) {
-                let start = ((top + row) * width + left) * channels;
-                texels[start..start + columns].copy_from_slice(&line[..columns]);
-            }
+/// The texels of blocks of 4 × 4 row by row, the channels of each together; those beyond the image are skipped.
+fn blocks<'a, T: Copy + Default>(
+    size: [u32; 2],
+    channels: usize,
+    blocks: impl Iterator<Item = &'a [u8]>,
+    decode: impl Fn(&[u8], &mut [T], usize),
+) -> Vec<T> {
+    let [width, height] = size.map(|side| side as usize);
+    let (across, pitch) = (width.div_ceil(4), 4 * channels);
+    let mut texels = vec![T::default(); width * height * channels];
+    let mut decoded = vec![T::default(); 4 * pitch];
+    for (number, block) in blocks.enumerate() {
+        decode(block, &mut decoded, pitch);
+        let (left, top) = (number % across * 4, number / across * 4);
+        let columns = (width - left).min(4) * channels;
+        for (row, line) in decoded.chunks_exact(pitch).enumerate().take(height - top) {
+            let start = ((top + row) * width + left) * channels;
+            texels[start..start + columns].copy_from_slice(&line[..columns]);
         }
-        texels
     }
+    texels
 }
 
 fn words(bytes: &[u8]) -> impl Iterator<Item = u32> {

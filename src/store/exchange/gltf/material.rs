@@ -14,6 +14,9 @@ use crate::store::exchange::surface::Surface;
 /// The extension of stretched highlights.
 pub const ANISOTROPY: &str = "KHR_materials_anisotropy";
 
+/// The extension of materials that shine and do nothing else.
+pub const UNLIT: &str = "KHR_materials_unlit";
+
 /// What a slot's material looks up, as references to textures.
 #[derive(Clone, Debug, Default)]
 pub struct SlotTextures {
@@ -26,6 +29,8 @@ pub struct SlotTextures {
     /// What the texture's opacity means, where it is looked up.
     pub alpha: Option<(AlphaMode, f32)>,
     pub is_double_sided: bool,
+    /// Whether its emission is multiplied by vertex colours, as the format has it of unlit materials alone.
+    pub is_unlit: bool,
 }
 
 /// A reference to a texture with the place that it has on the mesh.
@@ -144,6 +149,19 @@ pub fn material_json(material: &MaterialSettings, surface: &Surface, textures: &
     if textures.is_double_sided {
         json["doubleSided"] = true.into();
     }
+    let (strength, [r, g, b]) = surface.strength_and_color();
+    if textures.is_unlit && strength <= 1.0 && only_shines(surface) {
+        let texture = json["emissiveTexture"].take();
+        json["pbrMetallicRoughness"] =
+            json!({ "baseColorFactor": [strength * r, strength * g, strength * b, surface.opacity] });
+        if !texture.is_null() {
+            json["pbrMetallicRoughness"]["baseColorTexture"] = texture;
+        }
+        for key in ["emissiveTexture", "emissiveFactor"] {
+            json.as_object_mut().and_then(|json| json.remove(key));
+        }
+        json["extensions"] = json!({ UNLIT: {} });
+    }
     json["extras"] = json!({ carried::MARK: carried::json(material) });
     json
 }
@@ -184,6 +202,12 @@ fn numbers_of_format(material: &MaterialSettings, surface: &Surface, mean: f32, 
         shown.transmission_depth = 0.0;
     }
     shown
+}
+
+/// Whether a surface reflects and transmits nothing.
+fn only_shines(surface: &Surface) -> bool {
+    let weights = [surface.specular_weight, surface.coat_weight, surface.fuzz_weight];
+    surface.base_color == [0.0; 3] && surface.transmission_weight == 0.0 && weights == [0.0; 3]
 }
 
 /// The draft of OpenPBR's coat; readers without it take the clearcoat.

@@ -7,7 +7,7 @@ use std::path::Path;
 
 use serde_json::{Map, Value as Json, json};
 
-use self::material::{ANISOTROPY, SlotTextures, extensions_used, material_json};
+use self::material::{ANISOTROPY, SlotTextures, UNLIT, extensions_used, material_json};
 use super::report::Entry;
 use super::surface::{Law, Surface, Takes};
 use super::{ExchangeError, ReadOptions, Subject, Written, carried, shown};
@@ -83,7 +83,14 @@ pub fn write(subject: &Subject, path: &Path) -> Result<Written, ExchangeError> {
                 .entries
                 .insert(0, Entry::approximated("anisotropy, which varies", detail, None));
         }
-        materials.push(material_json(material, &surface, &textures, radius_of(&model)));
+        let json = material_json(material, &surface, &textures, radius_of(&model));
+        if textures.is_unlit && json["extensions"][UNLIT].is_null() {
+            let detail = "the format has them where a surface does nothing but shine, with 1 at most";
+            report
+                .entries
+                .insert(0, Entry::dropped("vertex colours of the emission", detail));
+        }
+        materials.push(json);
         if subject.document.as_ref().is_some_and(|document| document.ground) && slot == 0 {
             report
                 .entries
@@ -114,7 +121,10 @@ pub fn read(path: &Path, options: ReadOptions) -> Result<Subject, ExchangeError>
         let mut shows = material_json(
             &exact,
             &shown(&exact, &takes(&exact)).0,
-            &SlotTextures::default(),
+            &SlotTextures {
+                is_unlit: !of_file["extensions"][UNLIT].is_null(),
+                ..SlotTextures::default()
+            },
             radius_of(&model),
         );
         if let (true, Some(extensions)) = (
@@ -279,6 +289,7 @@ impl Builder {
             thinnest: slot.thinnest,
             alpha: Some((slot.alpha_mode, slot.alpha_cutoff)).filter(|_| has_opacity),
             is_double_sided: slot.double_sided,
+            is_unlit: slot.is_unlit && slot.has_vertex_colors && uses[TextureTarget::Emission],
             ..SlotTextures::default()
         };
         for &target in TextureTarget::ALL.iter().filter(|target| target.home() == **target) {
@@ -428,7 +439,7 @@ fn packed(
         json["buffers"][0]["uri"] = name.replace('%', "%25").replace(' ', "%20").replace('#', "%23").into();
         return Written {
             bytes: format!("{json:#}\n").into_bytes(),
-            beside: Some((name, numbers)),
+            beside: vec![(name, numbers)],
             materials,
         };
     }
@@ -446,7 +457,7 @@ fn packed(
     bytes.extend(numbers);
     Written {
         bytes,
-        beside: None,
+        beside: Vec::new(),
         materials,
     }
 }

@@ -86,6 +86,9 @@ fn command(program: PathBuf) -> Result<Command, String> {
 }
 
 fn bake(path: &Path) -> Result<Values, String> {
+    if crate::import::endings::ending(path) != "mtlx" {
+        return Err(format!("{PROGRAM} of MaterialX reads files of its own alone"));
+    }
     let Some(program) = program() else {
         return Err("MaterialX's tools would bake it: pip install materialx".to_owned());
     };
@@ -103,10 +106,14 @@ fn bake(path: &Path) -> Result<Values, String> {
     let mut values = Values::new();
     let loading = Loading::default();
     let images = Images::in_folder(folder.path(), &loading);
-    for (shader, material) in shaders(document.root_element()) {
-        let name = material.unwrap_or(shader).attribute("name").unwrap_or_default();
-        for input in shader.children().filter(|node| node.has_tag_name("input")) {
-            if let (Some(key), Ok(Some(found))) = (input.attribute("name"), worth(input, &images)) {
+    for shader in shaders(document.root_element()) {
+        let name = shader
+            .material
+            .unwrap_or(shader.node)
+            .attribute("name")
+            .unwrap_or_default();
+        for input in shader.node.children().filter(|node| node.has_tag_name("input")) {
+            if let (Some(key), Ok(Some(found))) = (input.attribute("name"), worth(input, &shader.within, &images)) {
                 values.insert((name.to_owned(), key.to_owned()), found.color());
             }
         }

@@ -1,13 +1,15 @@
 //! What inputs of a MaterialX document are worth: constants, images by their mean, and what the usual nodes compute of these.
 
 use std::cell::Cell;
+use std::collections::HashSet;
 use std::path::PathBuf;
 
 use roxmltree::Node;
 
 use super::images::Images;
-use crate::optics::tone::linear_from_srgb;
-use crate::optics::vector::Vec3;
+use super::spaces::Space;
+use super::surfaces::SurfaceKind;
+use crate::scene::texture::{TextureChannel, TextureSpace, UserTexture};
 
 /// Deepest chain of nodes that is followed.
 const DEPTH_MAX: usize = 64;
@@ -17,7 +19,7 @@ const STEPS_MAX: usize = 1 << 16;
 const LUMINANCE: [f32; 3] = [0.2722287, 0.6740818, 0.0536895];
 
 /// What an input is worth everywhere.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Worth {
     /// The value; one number stands in all four places.
     pub(super) value: [f32; 4],
@@ -25,20 +27,56 @@ pub(super) struct Worth {
     pub(super) pictures: Vec<PathBuf>,
     /// Something was computed of these means.
     pub(super) is_computed: bool,
+    /// The image that it is, where it is one, and what that is multiplied by.
+    pub(super) texture: Option<UserTexture>,
+    pub(super) factor: [f32; 4],
+    /// The unit that it is written in.
+    pub(super) unit: Option<String>,
+    /// What of it was not understood.
+    pub(super) notes: Vec<String>,
 }
 
 impl Worth {
     fn of(value: [f32; 4]) -> Self {
         Self {
             value,
-            pictures: Vec::new(),
-            is_computed: false,
+            factor: [1.0; 4],
+            ..Self::default()
         }
     }
 
     pub(super) fn color(&self) -> [f32; 3] {
         let [r, g, b, _] = self.value;
         [r, g, b]
+    }
+
+    /// Two values multiplied, an image of which stays one.
+    fn take_product(&mut self, of: &[Self]) {
+        let [a, b] = of else { return };
+        let (image, other) = if a.texture.is_some() { (a, b) } else { (b, a) };
+        if other.pictures.is_empty() && !image.is_computed {
+            self.texture.clone_from(&image.texture);
+            self.factor = std::array::from_fn(|i| image.factor[i] * other.value[i]);
+            self.is_computed = self.texture.is_none() && self.is_computed;
+        }
+    }
+
+    /// These channels of it; one stands for all.
+    fn picked(mut self, channels: &[usize]) -> Self {
+        let pick = |[r, g, b, a]: [f32; 4]| {
+            let of_place = |i| [r, g, b, a, 0.0, 1.0][*channels.get(i).unwrap_or(&channels[channels.len() - 1])];
+            std::array::from_fn(of_place)
+        };
+        (self.value, self.factor) = (pick(self.value), pick(self.factor));
+        self.texture = self.texture.and_then(|texture| match (channels, texture.channel) {
+            (&[channel @ 0..4], TextureChannel::Auto) => Some(UserTexture {
+                channel: TextureChannel::ALL[channel + 1],
+                ..texture
+            }),
+            ([0, 1, 2, ..], _) => Some(texture),
+            _ => None,
+        });
+        self
     }
 }
 
@@ -64,38 +102,123 @@ pub(super) fn child<'a>(node: Node<'a, 'a>, name: &str) -> Option<Node<'a, 'a>> 
 }
 
 /// The element of that name beside a node.
-pub(super) fn sibling<'a>(node: Node<'a, 'a>, name: &str) -> Option<Node<'a, 'a>> {
+fn sibling<'a>(node: Node<'a, 'a>, name: &str) -> Option<Node<'a, 'a>> {
     let is_meant = |other: &Node<'_, '_>| other.attribute("name") == Some(name);
     node.parent()?.children().find(is_meant)
 }
 
-/// The surface shaders with the materials that name them; those that no material names where there is no material.
-pub(super) fn shaders<'a>(root: Node<'a, 'a>) -> Vec<(Node<'a, 'a>, Option<Node<'a, 'a>>)> {
-    let materials = root.descendants().filter(|node| node.has_tag_name("surfacematerial"));
-    let named: Vec<_> = materials
-        .filter_map(|material| {
-            let place = child(material, "surfaceshader")?;
-            let shader = sibling(material, place.attribute("nodename")?)?;
-            Some((shader, Some(material)))
+/// Nodes of the document's own kinds that are looked into, the outermost first: what their graphs are given.
+type Within<'n, 'a> = &'n [Node<'a, 'a>];
+
+/// The definition and the graph of a node whose kind the document itself defines.
+fn definition<'a>(node: Node<'a, 'a>) -> Option<(Node<'a, 'a>, Node<'a, 'a>)> {
+    let elements = || node.document().root_element().children();
+    let kind = node.tag_name().name();
+    let named = node.attribute("nodedef");
+    let is_meant = |other: &Node<'_, '_>| {
+        let is_it = named.is_none_or(|name| other.attribute("name") == Some(name));
+        other.has_tag_name("nodedef") && other.attribute("node") == Some(kind) && is_it
+    };
+    elements().filter(is_meant).find_map(|nodedef| {
+        let name = nodedef.attribute("name")?;
+        let implements = |other: &Node<'_, '_>| other.attribute("nodedef") == Some(name);
+        let mut graphs = elements()
+            .filter(implements)
+            .filter_map(|found| match found.tag_name().name() {
+                "nodegraph" => Some(found),
+                "implementation" => sibling(found, found.attribute("nodegraph")?),
+                _ => None,
+            });
+        Some((nodedef, graphs.next()?))
+    })
+}
+
+/// A material's surface, and where it is.
+pub(super) struct Shader<'a> {
+    pub(super) node: Node<'a, 'a>,
+    /// The material as the document has it; none where the surface stands alone.
+    pub(super) material: Option<Node<'a, 'a>>,
+    /// The `surfacematerial` that names the surface.
+    pub(super) maker: Option<Node<'a, 'a>>,
+    pub(super) within: Vec<Node<'a, 'a>>,
+}
+
+impl<'a> Shader<'a> {
+    /// The surface of a material or of a surface, looked for in the document's own kinds.
+    fn behind(start: Node<'a, 'a>) -> Option<Self> {
+        let (mut node, mut output, mut maker, mut within) = (start, None, None, Vec::new());
+        for _ in 0..DEPTH_MAX {
+            let next = if node.has_tag_name("surfacematerial") {
+                maker = Some(node);
+                let mut place = child(node, "surfaceshader")?;
+                while let Some((outer, around)) = of_interface(place, &within) {
+                    within.truncate(around);
+                    place = outer;
+                }
+                source_of(place)?
+            } else if node.has_tag_name("output") {
+                source_of(node)?
+            } else if SurfaceKind::named(node.tag_name().name()).is_some() {
+                break;
+            } else if let Some((_, graph)) = definition(node) {
+                within.push(node);
+                source_of(output_of(graph, output)?)?
+            } else {
+                break;
+            };
+            (node, output) = (next.node, next.output);
+        }
+        let material = (start.attribute("type") != Some("surfaceshader")).then_some(start);
+        Some(Self {
+            node,
+            material,
+            maker,
+            within,
         })
+    }
+}
+
+/// The surfaces of the materials; those that no material names where there is no material.
+pub(super) fn shaders<'a>(root: Node<'a, 'a>) -> Vec<Shader<'a>> {
+    let is_defining = |outer: Node<'_, '_>| outer.has_tag_name("nodegraph") && outer.has_attribute("nodedef");
+    let is_material = |node: &Node<'a, 'a>| {
+        let is_own = node.attribute("type") == Some("material") && definition(*node).is_some();
+        is_own || node.has_tag_name("surfacematerial") && !node.ancestors().any(is_defining)
+    };
+    let named: Vec<_> = root
+        .descendants()
+        .filter(is_material)
+        .filter_map(Shader::behind)
         .collect();
     if !named.is_empty() {
         return named;
     }
-    let is_shader =
-        |node: &Node<'_, '_>| node.attribute("type") == Some("surfaceshader") && !node.has_tag_name("input");
-    let alone = root.children().filter(is_shader);
-    alone.map(|shader| (shader, None)).collect()
+    let is_shader = |node: &Node<'_, '_>| {
+        let is_graph = ["input", "nodegraph"].iter().any(|kind| node.has_tag_name(*kind));
+        node.attribute("type") == Some("surfaceshader") && !is_graph
+    };
+    let mut known = HashSet::new();
+    let alone = root.children().filter(is_shader).filter_map(Shader::behind);
+    alone.filter(|shader| known.insert(shader.node.id())).collect()
 }
 
-/// A node, and which of its outputs is taken.
+/// A node, and which of its outputs is taken, and which channels of that.
 #[derive(Clone, Copy)]
 pub(super) struct Source<'a> {
     pub(super) node: Node<'a, 'a>,
     output: Option<&'a str>,
+    channels: Option<&'a str>,
 }
 
-/// What an input or an output of a graph is connected to.
+/// The output of that name of a graph; its first without a name.
+fn output_of<'a>(graph: Node<'a, 'a>, name: Option<&str>) -> Option<Node<'a, 'a>> {
+    let is_meant = |node: &Node<'_, '_>| {
+        node.has_tag_name("output") && name.is_none_or(|name| node.attribute("name") == Some(name))
+    };
+    graph.children().find(is_meant)
+}
+
+/// What an input or an output of a graph is connected to. A graph goes before a node.
 pub(super) fn source_of<'a>(place: Node<'a, 'a>) -> Option<Source<'a>> {
     let beside = if place.has_tag_name("input") {
         place.parent()?
@@ -103,28 +226,59 @@ pub(super) fn source_of<'a>(place: Node<'a, 'a>) -> Option<Source<'a>> {
         place
     };
     let output = place.attribute("output");
-    if let Some(name) = place.attribute("nodename") {
-        let node = sibling(beside, name)?;
-        return Some(Source { node, output });
+    let node = sibling(beside, place.attribute("nodegraph").or(place.attribute("nodename"))?)?;
+    if !node.has_tag_name("nodegraph") {
+        let channels = None;
+        return Some(Source { node, output, channels });
     }
-    let graph = sibling(beside, place.attribute("nodegraph")?)?;
-    let is_meant = |node: &Node<'_, '_>| {
-        node.has_tag_name("output") && output.is_none_or(|name| node.attribute("name") == Some(name))
-    };
-    source_of(graph.children().find(is_meant)?)
+    let inner = output_of(node, output)?;
+    Some(Source {
+        channels: inner.attribute("channels"),
+        ..source_of(inner)?
+    })
 }
 
-/// The input of the graph around a place that stands behind a name.
-fn of_interface<'a>(place: Node<'a, 'a>) -> Option<Node<'a, 'a>> {
+/// The input behind the name that a place has for it, and how many of `within` that is still in: of the graph around it, of the node whose
+/// kind the graph defines, of that kind's definition, or of the document.
+fn of_interface<'a>(place: Node<'a, 'a>, within: Within<'_, 'a>) -> Option<(Node<'a, 'a>, usize)> {
     let name = place.attribute("interfacename")?;
-    let graph = place.ancestors().find(|node| node.has_tag_name("nodegraph"))?;
-    child(graph, name)
+    let root = place.document().root_element();
+    let graph = place.ancestors().find(|node| node.has_tag_name("nodegraph"));
+    if let Some(own) = graph.and_then(|graph| child(graph, name)) {
+        return Some((own, within.len()));
+    }
+    let given = within.split_last().and_then(|(node, outer)| {
+        let is_set = |input: &Node<'_, '_>| {
+            input
+                .attributes()
+                .any(|attribute| OF_VALUES.contains(&attribute.name()))
+        };
+        Some((child(*node, name).filter(is_set)?, outer.len()))
+    });
+    let of_definition = || {
+        let named = graph?.attribute("nodedef");
+        let nodedef = match within.last() {
+            Some(node) => definition(*node)?.0,
+            None => root
+                .children()
+                .find(|node| node.has_tag_name("nodedef") && node.attribute("name") == named)?,
+        };
+        child(nodedef, name)
+    };
+    given.or_else(|| Some((of_definition().or_else(|| child(root, name))?, 0)))
 }
+
+/// The attributes by which an input has a value, or is connected.
+const OF_VALUES: [&str; 4] = ["nodegraph", "nodename", "interfacename", "value"];
 
 /// What an input is worth; nothing where it has no value of its own.
-pub(super) fn worth(input: Node<'_, '_>, images: &Images<'_>) -> Result<Option<Worth>, Unknown> {
+pub(super) fn worth<'a>(
+    input: Node<'a, 'a>,
+    within: Within<'_, 'a>,
+    images: &Images<'_>,
+) -> Result<Option<Worth>, Unknown> {
     let steps = Cell::new(0);
-    Graph { images, steps }.input(input, 0)
+    Graph { images, steps }.input(input, within, 0)
 }
 
 /// A document's nodes, followed.
@@ -135,73 +289,136 @@ struct Graph<'p> {
 }
 
 impl Graph<'_> {
-    fn input(&self, input: Node<'_, '_>, depth: usize) -> Result<Option<Worth>, Unknown> {
+    fn step(&self, depth: usize) -> Result<(), Unknown> {
         self.steps.update(|steps| steps + 1);
         if depth > DEPTH_MAX || self.steps.get() > STEPS_MAX {
             return Err(Unknown::Missing(format!(
                 "a graph that has a circle, more than {DEPTH_MAX} nodes in a row or more than {STEPS_MAX} steps"
             )));
         }
-        if let Some(value) = input.attribute("value") {
-            return Ok(value_of(input, value).map(Worth::of));
+        Ok(())
+    }
+
+    /// What an input is connected to goes before its own value.
+    fn input<'a>(&self, input: Node<'a, 'a>, within: Within<'_, 'a>, depth: usize) -> Result<Option<Worth>, Unknown> {
+        self.step(depth)?;
+        let mut found = if input.has_attribute("nodegraph") || input.has_attribute("nodename") {
+            let source = source_of(input).ok_or(Unknown::missing("a node that is not there"))?;
+            self.node(source, within, depth + 1)?
+        } else if let Some((outer, around)) = of_interface(input, within) {
+            self.input(outer, &within[..around], depth + 1)?
+        } else {
+            return match input.attribute("value").map(str::trim) {
+                None | Some("") if input.has_attribute("interfacename") => {
+                    Err(Unknown::missing("an interfacename that no input has"))
+                }
+                None | Some("") => Ok(None),
+                Some(text) => value_of(input, text).map(Some),
+            };
+        };
+        if let Some(letters) = input.attribute("channels") {
+            let channels = channels(letters)?;
+            found = found.map(|found| found.picked(&channels));
         }
-        if input.attribute("interfacename").is_some() {
-            return of_interface(input).map_or(Ok(None), |of_graph| self.input(of_graph, depth + 1));
-        }
-        let is_plain = input.attribute("nodename").or(input.attribute("nodegraph")).is_none();
-        match source_of(input) {
-            Some(source) => self.node(source, depth + 1),
-            None if is_plain => Ok(None),
-            None => Err(Unknown::missing("a node that is not there")),
-        }
+        Ok(found)
     }
 
     /// An input of a node, or what stands in where it has none.
-    fn or(&self, node: Node<'_, '_>, name: &str, default: f32, depth: usize) -> Result<Worth, Unknown> {
-        let found = child(node, name).map_or(Ok(None), |input| self.input(input, depth + 1));
+    fn or<'a>(
+        &self,
+        (node, within): (Node<'a, 'a>, Within<'_, 'a>),
+        name: &str,
+        default: f32,
+        depth: usize,
+    ) -> Result<Worth, Unknown> {
+        let found = child(node, name).map_or(Ok(None), |input| self.input(input, within, depth + 1));
         found.map(|found| found.unwrap_or(Worth::of([default; 4])))
     }
 
-    fn node(&self, source: Source<'_>, depth: usize) -> Result<Option<Worth>, Unknown> {
-        let node = source.node;
+    fn node<'a>(&self, source: Source<'a>, within: Within<'_, 'a>, depth: usize) -> Result<Option<Worth>, Unknown> {
+        self.step(depth)?;
+        let Source { node, output, .. } = source;
         let kind = node.tag_name().name();
-        match kind {
+        let input = |name: &str, default: f32| self.or((node, within), name, default, depth);
+        let number = |name: &str, default: f32| input(name, default).map(|found| found.value[0]);
+        let given = |name: &str| child(node, name).map_or(Ok(None), |input| self.input(input, within, depth + 1));
+        let found = match kind {
             "image" | "tiledimage" | "gltf_image" | "gltf_colorimage" | "UsdUVTexture" => {
-                let mut found = self.picture(node)?;
-                if let Some(channel) = source.output.and_then(channel_of_output) {
-                    found.value = [found.value[channel]; 4];
+                let found = self.picture(node, within, depth)?;
+                Some(match output.and_then(channel_of_output) {
+                    Some(channel) => found.picked(&[channel]),
+                    None => found,
+                })
+            }
+            "constant" => given("value")?,
+            "dot" | "convert" => given("in")?,
+            "ifgreater" | "ifgreatereq" | "ifequal" => {
+                let (a, b) = (number("value1", 1.0)?, number("value2", 0.0)?);
+                let is_so = match kind {
+                    "ifgreater" => a > b,
+                    "ifgreatereq" => a >= b,
+                    _ => a == b,
+                };
+                Some(input(if is_so { "in1" } else { "in2" }, 0.0)?)
+            }
+            "switch" => Some(input(
+                &format!("in{}", number("which", 0.0)?.max(0.0).floor() + 1.0),
+                0.0,
+            )?),
+            "swizzle" => {
+                let letters = child(node, "channels").and_then(|input| input.attribute("value"));
+                Some(input("in", 0.0)?.picked(&channels(letters.unwrap_or_default())?))
+            }
+            "extract" => Some(input("in", 0.0)?.picked(&[number("index", 0.0)?.clamp(0.0, 3.0) as usize])),
+            "separate2" | "separate3" | "separate4" => {
+                let channel = output.and_then(channel_of_output);
+                Some(input("in", 0.0)?.picked(&[channel.ok_or(Unknown::missing("an output that its node has not"))?]))
+            }
+            _ => match operation(node) {
+                Some((inputs, compute)) => {
+                    let of_input = |named: &str| {
+                        let (name, default) = named.split_once('=').unwrap_or((named, "0"));
+                        input(name, default.parse().unwrap_or_default())
+                    };
+                    let all: Vec<Worth> = inputs.split(' ').map(of_input).collect::<Result<_, _>>()?;
+                    let values: Vec<[f32; 4]> = all.iter().map(|one| one.value).collect();
+                    let mut found = Worth::of(compute(&values).map(|x| if x.is_finite() { x } else { 0.0 }));
+                    for one in &all {
+                        found.pictures.extend_from_slice(&one.pictures);
+                        found.notes.extend_from_slice(&one.notes);
+                        found.unit = found.unit.or_else(|| one.unit.clone());
+                    }
+                    found.pictures.dedup();
+                    found.is_computed = !found.pictures.is_empty();
+                    if kind == "multiply" {
+                        found.take_product(&all);
+                    }
+                    Some(found)
                 }
-                return Ok(Some(found));
-            }
-            "constant" | "dot" | "convert" => {
-                let name = if kind == "constant" { "value" } else { "in" };
-                return child(node, name).map_or(Ok(None), |input| self.input(input, depth + 1));
-            }
-            _ => {}
-        }
-        let Some((inputs, compute)) = operation(source) else {
-            return Err(Unknown::Computed(kind.to_owned()));
+                None => {
+                    let computed = || Unknown::Computed(kind.to_owned());
+                    let (_, graph) = definition(node).ok_or_else(computed)?;
+                    let inner = output_of(graph, output).and_then(source_of).ok_or_else(computed)?;
+                    self.node(inner, &[within, &[node]].concat(), depth + 1)?
+                }
+            },
         };
-        let mut values = Vec::new();
-        let mut found = Worth::of([0.0; 4]);
-        for input in inputs.split(' ') {
-            let (name, default) = input.split_once('=').unwrap_or((input, "0"));
-            let input = self.or(node, name, default.parse().unwrap_or_default(), depth)?;
-            values.push(input.value);
-            found.pictures.extend(input.pictures);
+        match (found, source.channels) {
+            (Some(found), Some(letters)) => Ok(Some(found.picked(&channels(letters)?))),
+            (found, _) => Ok(found),
         }
-        found.value = compute(&values).map(|x| if x.is_finite() { x } else { 0.0 });
-        found.is_computed = !found.pictures.is_empty();
-        found.pictures.dedup();
-        Ok(Some(found))
     }
 
-    /// The mean of an image.
-    fn picture(&self, node: Node<'_, '_>) -> Result<Worth, Unknown> {
-        let Some(input) = child(node, "file") else {
-            return Err(Unknown::missing("an image without a file"));
-        };
-        let input = of_interface(input).unwrap_or(input);
+    /// The mean of an image; what the node says stands in where there is none.
+    fn picture<'a>(&self, node: Node<'a, 'a>, within: Within<'_, 'a>, depth: usize) -> Result<Worth, Unknown> {
+        let mut input = child(node, "file").ok_or(Unknown::missing("an image without a file"))?;
+        let mut around = within;
+        for _ in 0..DEPTH_MAX {
+            let Some((outer, fewer)) = of_interface(input, around) else {
+                break;
+            };
+            (input, around) = (outer, &around[..fewer]);
+        }
         let name = input.attribute("value").unwrap_or_default();
         // Prefixes add up from the outside inwards.
         let prefixes: Vec<&str> = input
@@ -210,36 +427,115 @@ impl Graph<'_> {
             .collect();
         let prefix: String = prefixes.into_iter().rev().collect();
         let file = PathBuf::from(format!("{prefix}{name}"));
-        let mean = self
-            .images
-            .mean(&file)
-            .map_err(|reason| Unknown::Missing(format!("{}: {reason}", file.display())))?;
-        let is_encoded = colorspace(input).is_some_and(|space| space.starts_with("srgb"));
-        let [r, g, b, a] = mean.codes;
-        let [r, g, b] = if is_encoded { mean.linear } else { [r, g, b] };
-        Ok(Worth {
-            pictures: vec![file],
-            ..Worth::of([r, g, b, a])
-        })
+        let read = match self.images.mean(&file) {
+            Ok(read) => read,
+            Err(reason) => {
+                let reason = format!("{}: {reason}", file.display());
+                for stand_in in ["default", "fallback"].into_iter().filter_map(|name| child(node, name)) {
+                    if let Some(mut found) = self.input(stand_in, within, depth + 1)? {
+                        found.notes.push(format!(
+                            "{reason}; the image's {} stands in",
+                            stand_in.attribute("name").unwrap_or_default()
+                        ));
+                        return Ok(found);
+                    }
+                }
+                return Err(Unknown::Missing(reason));
+            }
+        };
+        let is_of_color = !node
+            .attribute("type")
+            .is_some_and(|kind| kind.starts_with("float") || kind.starts_with("vector"));
+        let of_usd = child(node, "sourceColorSpace").and_then(|input| input.attribute("value"));
+        let (space, mut notes) = match of_usd {
+            Some("auto") => space_of(if read.is_of_screen { "sRGB" } else { "raw" }),
+            Some(name) => space_of(name),
+            None if is_of_color => space_of(colorspace(input)),
+            None => space_of("none"),
+        };
+        let [r, g, b] = space.rec709_of_mean(&read.mean);
+        let mut found = Worth::of([r, g, b, read.mean.codes[3]]);
+        found.texture = space.is_srgb().map(|is_srgb| UserTexture {
+            space: if is_srgb {
+                TextureSpace::Srgb
+            } else {
+                TextureSpace::Linear
+            },
+            ..UserTexture::of(self.images.path(&file))
+        });
+        if node.has_tag_name("UsdUVTexture") {
+            let [scale, bias] =
+                [("scale", 1.0), ("bias", 0.0)].map(|(name, default)| self.or((node, within), name, default, depth));
+            let (scale, bias) = (scale?.value, bias?.value);
+            found.value = std::array::from_fn(|i| found.value[i] * scale[i] + bias[i]);
+            (found.factor, found.is_computed) = (scale, bias != [0.0; 4]);
+            // So are normals written.
+            let is_direction = scale[..3] == [2.0; 3] && bias[..3] == [-1.0; 3];
+            found.texture = found.texture.filter(|_| !found.is_computed || is_direction);
+        }
+        found.notes.append(&mut notes);
+        if read.is_even {
+            // It is that colour everywhere.
+            (found.texture, found.is_computed) = (None, false);
+            return Ok(found);
+        }
+        found.pictures.push(file);
+        let tiling = self.or((node, within), "uvtiling", 1.0, depth)?.value;
+        let is_placed = tiling[0] > 0.0 && tiling[1] > 0.0;
+        found.texture = found.texture.filter(|_| is_placed);
+        if let Some(texture) = &mut found.texture {
+            let offset = self.or((node, within), "uvoffset", 0.0, depth)?.value;
+            (texture.scale, texture.stretch) = (tiling[0], tiling[1] / tiling[0]);
+            // About the middle here, about the origin there.
+            texture.offset = [0, 1].map(|i| offset[i] + 0.5 * (1.0 - tiling[i]));
+            found.notes.extend(node.children().filter_map(of_place));
+        }
+        Ok(found)
     }
+}
+
+/// What is said of an image's input that places it, where that is not read.
+fn of_place(input: Node<'_, '_>) -> Option<String> {
+    let name = input.attribute("name").filter(|_| input.has_tag_name("input"))?;
+    let value = input.attribute("value").unwrap_or_default().trim();
+    let is_read = match name {
+        "texcoord" | "st" => source_of(input).is_none_or(|source| {
+            let kinds = ["texcoord", "geompropvalue", "UsdPrimvarReader"];
+            kinds.iter().any(|kind| source.node.has_tag_name(*kind))
+        }),
+        "uaddressmode" | "vaddressmode" | "wrapS" | "wrapT" => {
+            matches!(value, "" | "periodic" | "repeat" | "useMetadata" | "black")
+        }
+        "scale" | "bias" | "fallback" | "sourceColorSpace" => input.parent()?.has_tag_name("UsdUVTexture"),
+        "file" | "default" | "uvtiling" | "uvoffset" | "filtertype" | "layer" => true,
+        _ => false,
+    };
+    (!is_read).then(|| format!("the image's {name} is not read"))
 }
 
 /// Which of a value's four numbers an output is.
 fn channel_of_output(name: &str) -> Option<usize> {
-    channel(name.strip_prefix("out")?.chars().next()?)
+    let name = name.strip_prefix("out").unwrap_or(name);
+    let letter = name.chars().next().filter(|_| !matches!(name, "rgb" | "rgba"))?;
+    channel(letter).filter(|channel| *channel < 4)
 }
 
-/// Which of a value's four numbers a letter stands for.
+/// Which of a value's four numbers a letter stands for, or 0 or 1 after them.
 fn channel(letter: char) -> Option<usize> {
-    "xyzw".find(letter).or("rgba".find(letter))
+    "rgba01".find(letter).or("xyzw".find(letter))
+}
+
+fn channels(letters: &str) -> Result<Vec<usize>, Unknown> {
+    let channels: Option<Vec<usize>> = letters.trim().chars().map(channel).collect();
+    let found = channels.filter(|channels| !channels.is_empty());
+    found.ok_or_else(|| Unknown::Missing(format!("channels {letters:?}, which no value has")))
 }
 
 type Values<'a> = &'a [[f32; 4]];
 type Compute = Box<dyn Fn(Values<'_>) -> [f32; 4]>;
 
 /// What a node computes: the inputs that it takes, with what stands in for each where that is not 0, and how.
-fn operation(source: Source<'_>) -> Option<(&'static str, Compute)> {
-    let node = source.node;
+fn operation(node: Node<'_, '_>) -> Option<(&'static str, Compute)> {
     if let Some((_, inputs, compute)) = ELEMENTWISE.iter().find(|(kind, ..)| node.has_tag_name(*kind)) {
         let each = move |values: Values<'_>| {
             std::array::from_fn(|i| {
@@ -249,31 +545,12 @@ fn operation(source: Source<'_>) -> Option<(&'static str, Compute)> {
         };
         return Some((inputs, Box::new(each)));
     }
-    let number = |name: &str| -> Option<f32> { child(node, name)?.attribute("value")?.trim().parse().ok() };
-    let weights = child(node, "lumacoeffs").and_then(|input| value_of(input, input.attribute("value")?));
+    let weights = child(node, "lumacoeffs").and_then(|input| value_of(input, input.attribute("value")?).ok());
     let luminance = move |color: [f32; 4]| {
-        let weights = weights.map_or(LUMINANCE, |[r, g, b, _]| [r, g, b]);
+        let weights = weights.as_ref().map_or(LUMINANCE, Worth::color);
         (0..3).map(|i| weights[i] * color[i]).sum::<f32>()
     };
     Some(match node.tag_name().name() {
-        "separate2" | "separate3" | "separate4" => {
-            let channel = channel_of_output(source.output?)?;
-            ("in", Box::new(move |values| [values[0][channel]; 4]))
-        }
-        "extract" => {
-            let channel = number("index").unwrap_or(0.0).clamp(0.0, 3.0) as usize;
-            ("in", Box::new(move |values| [values[0][channel]; 4]))
-        }
-        "swizzle" => {
-            let letters = child(node, "channels")?.attribute("value")?;
-            let channels: Vec<usize> = letters.chars().map(channel).collect::<Option<_>>()?;
-            let last = *channels.last()?;
-            let pick = move |i: usize| channels.get(i).copied().unwrap_or(last);
-            (
-                "in",
-                Box::new(move |values| std::array::from_fn(|i| values[0][pick(i)])),
-            )
-        }
         "combine2" | "combine3" | "combine4" => (
             "in1 in2 in3 in4=1",
             Box::new(|values| std::array::from_fn(|i| values[i][0])),
@@ -320,6 +597,14 @@ const ELEMENTWISE: &[Elementwise] = &[
     ("ln", "in=1", |x| x[0].ln()),
     ("sin", "in", |x| x[0].sin()),
     ("cos", "in", |x| x[0].cos()),
+    ("tan", "in", |x| x[0].tan()),
+    ("fract", "in", |x| x[0] - x[0].floor()),
+    ("plus", "bg fg mix=1", |x| x[0] + x[1] * x[2]),
+    ("minus", "bg fg mix=1", |x| x[0] - x[1] * x[2]),
+    ("difference", "bg fg mix=1", |x| {
+        x[0] + ((x[0] - x[1]).abs() - x[0]) * x[2]
+    }),
+    ("screen", "bg fg mix=1", |x| x[0] + x[1] * (1.0 - x[0]) * x[2]),
     ("clamp", "in low high=1", |x| x[0].max(x[1]).min(x[2])),
     ("mix", "bg fg mix", |x| x[0] + (x[1] - x[0]) * x[2]),
     ("smoothstep", "in low high=1", |x| {
@@ -332,32 +617,41 @@ const ELEMENTWISE: &[Elementwise] = &[
     ("contrast", "in amount=1 pivot=0.5", |x| (x[0] - x[2]) * x[1] + x[2]),
 ];
 
-fn colorspace<'a>(node: Node<'a, 'a>) -> Option<&'a str> {
-    node.ancestors().find_map(|node| node.attribute("colorspace"))
+fn colorspace<'a>(node: Node<'a, 'a>) -> &'a str {
+    let named = node.ancestors().find_map(|node| node.attribute("colorspace"));
+    named.unwrap_or_default()
+}
+
+/// The space of that name, and what is said where it is not known.
+fn space_of(name: &str) -> (Space, Vec<String>) {
+    let note = || format!("the colour space {name} is not known; the numbers are taken as linear Rec. 709");
+    Space::named(name).map_or_else(|| (Space::working(), vec![note()]), |space| (space, Vec::new()))
 }
 
 /// A value as text; one number stands for all.
-pub(super) fn value_of(input: Node<'_, '_>, text: &str) -> Option<[f32; 4]> {
-    match text {
-        "true" => return Some([1.0; 4]),
-        "false" => return Some([0.0; 4]),
-        _ => {}
-    }
-    let numbers: Option<Vec<f32>> = text.split(',').map(|part| part.trim().parse().ok()).collect();
-    let numbers = numbers?.into_iter().map(|x| if f32::is_finite(x) { x } else { 0.0 });
-    Some(match numbers.collect::<Vec<_>>()[..] {
+fn value_of(input: Node<'_, '_>, text: &str) -> Result<Worth, Unknown> {
+    let number = |text: &str| match text.trim() {
+        "true" | "presence" => Some(1.0),
+        "false" | "transparent" => Some(0.0),
+        text => text.parse().ok().map(|x: f32| if x.is_finite() { x } else { 0.0 }),
+    };
+    let wrong = || Unknown::Missing(format!("{text} is no number"));
+    let numbers: Vec<f32> = text.split(',').map(number).collect::<Option<_>>().ok_or_else(wrong)?;
+    let mut found = Worth::of(match numbers[..] {
         [x] => [x; 4],
         [x, y] => [x, y, 0.0, 1.0],
-        [r, g, b, ref alpha @ ..] => {
-            let is_encoded = input.attribute("type").is_some_and(|kind| kind.starts_with("color"))
-                && colorspace(input).is_some_and(|space| space.starts_with("srgb"));
-            let [r, g, b] = if is_encoded {
-                linear_from_srgb(Vec3::<f32>::from_f32([r, g, b])).to_f32()
-            } else {
-                [r, g, b]
-            };
-            [r, g, b, alpha.first().copied().unwrap_or(1.0)]
-        }
-        _ => return None,
-    })
+        [r, g, b, ref alpha @ ..] => [r, g, b, alpha.first().copied().unwrap_or(1.0)],
+        [] => return Err(wrong()),
+    });
+    if input.attribute("type").is_some_and(|kind| kind.starts_with("color")) {
+        let (space, notes) = space_of(colorspace(input));
+        let [r, g, b] = space.rec709(found.color());
+        found = Worth {
+            value: [r, g, b, found.value[3]],
+            notes,
+            ..found
+        };
+    }
+    found.unit = input.attribute("unit").map(str::to_owned);
+    Ok(found)
 }

@@ -6,9 +6,8 @@ use std::path::{Path, PathBuf};
 
 use crate::import::Budget;
 use crate::import::limits::Reach;
-use crate::import::picture::mean_of_file;
+use crate::import::picture::{FileMean, mean_of_file};
 use crate::scene::Loading;
-use crate::scene::texture::TextureMean;
 
 /// Images that a document names: each is read once, within one budget.
 pub(super) struct Images<'p> {
@@ -17,7 +16,7 @@ pub(super) struct Images<'p> {
     /// Cancellation, and images that were refused.
     loading: &'p Loading,
     budget: Budget,
-    means: RefCell<HashMap<PathBuf, Result<TextureMean, String>>>,
+    means: RefCell<HashMap<PathBuf, Result<FileMean, String>>>,
 }
 
 impl<'p> Images<'p> {
@@ -31,12 +30,17 @@ impl<'p> Images<'p> {
         }
     }
 
+    /// The file of an image by its name in the document.
+    pub(super) fn path(&self, file: &Path) -> PathBuf {
+        self.folder.join(file)
+    }
+
     /// Mean of an image by its name in the document.
-    pub(super) fn mean(&self, file: &Path) -> Result<TextureMean, String> {
+    pub(super) fn mean(&self, file: &Path) -> Result<FileMean, String> {
         if let Some(known) = self.means.borrow().get(file) {
             return known.clone();
         }
-        let path = self.folder.join(file);
+        let path = self.path(file);
         let reached = Reach::of_folder(self.folder).check(&path, self.loading);
         let wanted = self.loading.check().map_err(crate::in_words);
         let mean = wanted

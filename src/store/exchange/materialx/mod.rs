@@ -7,18 +7,23 @@ mod images;
 mod include;
 mod inputs;
 mod read;
+mod spaces;
 mod surfaces;
 mod table;
+mod textures;
+mod units;
 
 use std::collections::HashMap;
+use std::path::Path;
 
-pub(super) use self::inputs::Inputs;
-pub(super) use self::read::read;
+pub(super) use self::read::{is_near, read, read_document};
 pub use self::surfaces::{SURFACES, SurfaceKind};
 pub(super) use self::surfaces::{as_open_pbr, written};
 pub(super) use self::table::OPEN_PBR;
 
+use self::read::{normal_target, target_of};
 use self::surfaces::as_standard_surface;
+use self::textures::{Files, Nodes};
 use super::carried;
 use super::surface::{Surface, Takes};
 use super::xml::{HEAD, element, escaped, identifier, numbers};
@@ -37,14 +42,21 @@ const STANDARD: Takes = Takes {
 };
 
 /// A document with Standard Surface in OpenPBR's place where `is_standard`.
-pub fn write(subject: &Subject, is_standard: bool) -> Result<Written, ExchangeError> {
+pub fn write(subject: &Subject, path: &Path, is_standard: bool) -> Result<Written, ExchangeError> {
     let (mut taken, mut reports, mut text) = (HashMap::new(), Vec::new(), String::new());
+    let mut files = Files::of(path);
     for material in &subject.materials {
         let takes = if is_standard { STANDARD } else { Takes::OPEN_PBR };
-        let (surface, report) = shown(material, &takes);
+        let (surface, mut report) = shown(material, &takes);
         let name = identifier(&material.name, &mut taken);
         let shader = identifier(&format!("{name}_surface"), &mut taken);
-        text += &surface_node(&surface, &shader, is_standard);
+        let rows = if is_standard {
+            table::STANDARD_SURFACE
+        } else {
+            table::OPEN_PBR
+        };
+        let nodes = Nodes::of(material, (&shader, rows), &mut files, &mut report);
+        text += &surface_node(&surface, &shader, is_standard, nodes);
         text += &element(
             &format!(
                 "surfacematerial name=\"{name}\" type=\"material\" uiname=\"{}\" {CARRIER}=\"{}\"",
@@ -56,10 +68,13 @@ pub fn write(subject: &Subject, is_standard: bool) -> Result<Written, ExchangeEr
         reports.push(report);
     }
     let root = element("materialx version=\"1.39\" colorspace=\"lin_rec709\"", &text);
-    Ok(Written::text(format!("{HEAD}{root}"), reports))
+    Ok(Written {
+        beside: files.contents,
+        ..Written::text(format!("{HEAD}{root}"), reports)
+    })
 }
 
-fn surface_node(surface: &Surface, name: &str, is_standard: bool) -> String {
+fn surface_node(surface: &Surface, name: &str, is_standard: bool, mut nodes: Nodes) -> String {
     let (kind, rows, shown) = if is_standard {
         (
             "standard_surface",
@@ -75,19 +90,29 @@ fn surface_node(surface: &Surface, name: &str, is_standard: bool) -> String {
         } else {
             ("float", value[0].to_string())
         };
-        format!("<input name=\"{}\" type=\"{kind}\" value=\"{value}\" />\n", row.place)
+        let connection = nodes.connection(target_of(row), kind, &value);
+        let worth = connection.unwrap_or_else(|| format!("value=\"{value}\""));
+        format!("<input name=\"{}\" type=\"{kind}\" {worth} />\n", row.place)
     };
     // The sheen of Standard Surface is another one.
     let has_place = |(row, _): &(&FileParameter, [f32; 3])| !row.place.starts_with("sheen");
     let mut inputs: String = written(rows, &shown).filter(has_place).map(input).collect();
+    for row in rows {
+        if let Some(normal) = normal_target(row.place).and_then(|target| nodes.normal(target)) {
+            inputs += &format!(
+                "<input name=\"{}\" type=\"vector3\" nodename=\"{normal}\" />\n",
+                row.place
+            );
+        }
+    }
     let (_, rotation_deg) = surface.ratio_and_rotation();
-    let mut graph = String::new();
+    let mut graph = nodes.text;
     if !is_standard && surface.anisotropy != 0.0 && rotation_deg != 0.0 {
         inputs += &format!(
             "<input name=\"geometry_tangent\" type=\"vector3\" nodegraph=\"{name}_tangent\" output=\"out\" />\n"
         );
         let turned = TURNED_TANGENT.replace("TURN", &rotation_deg.to_string());
-        graph = element(&format!("nodegraph name=\"{name}_tangent\""), &turned);
+        graph += &element(&format!("nodegraph name=\"{name}_tangent\""), &turned);
     }
     let surface = element(&format!("{kind} name=\"{name}\" type=\"surfaceshader\""), &inputs);
     surface + &graph

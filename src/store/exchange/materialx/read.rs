@@ -6,16 +6,18 @@ use std::path::Path;
 use roxmltree::{Document, Node};
 
 use super::bake::Baker;
-use super::graph::{Unknown, child, shaders, source_of, worth};
+use super::graph::{Shader, Unknown, Worth, child, shaders, source_of, worth};
 use super::images::Images;
 use super::include::whole_text;
 use super::inputs::Inputs;
 use super::surfaces::SurfaceKind;
+use super::units;
 use super::{CARRIER, write};
-use crate::document::{MaterialSettings, PARAMETERS, Parameter};
-use crate::import::Goes;
+use crate::document::{ImportLobe, MaterialSettings, PARAMETERS, Parameter, UserTextures};
+use crate::import::{FileParameter, Goes};
 use crate::optics::fresnel::Fresnel;
 use crate::scene::Loading;
+use crate::scene::texture::{TextureChannel, TextureTarget, UserTexture};
 use crate::store::exchange::report::Entry;
 use crate::store::exchange::surface::Surface;
 use crate::store::exchange::{ExchangeError, ReadOptions, Subject, carried, xml};
@@ -30,18 +32,26 @@ pub fn read(path: &Path, options: ReadOptions) -> Result<Subject, ExchangeError>
     };
     let text = whole_text(path, String::from_utf8_lossy(&bytes).into_owned(), &options.loading).map_err(wrong)?;
     let document = xml::parse(&text).map_err(wrong)?;
-    let root = document.root_element();
-    if !root.has_tag_name("materialx") {
+    if !document.root_element().has_tag_name("materialx") {
         return Err(wrong("it has no <materialx>".to_owned()));
     }
+    read_document(path, &document, options)
+}
+
+/// The materials of a document whose images are seen from the file at `path`.
+pub(in crate::store::exchange) fn read_document(
+    path: &Path,
+    document: &Document<'_>,
+    options: ReadOptions,
+) -> Result<Subject, ExchangeError> {
     let mut subject = Subject::default();
     let mut refused = Vec::new();
     let mut baker = Baker::of(path);
     let images = Images::in_folder(path.parent().unwrap_or(Path::new(".")), &options.loading);
-    for (shader, material) in shaders(root) {
-        match read_surface(shader, material, &images, &mut baker) {
+    for shader in shaders(document.root_element()) {
+        match read_surface(&shader, &images, &mut baker) {
             Ok((surface, losses)) => {
-                let (material, losses) = exact_or_shown(&surface, losses, material, shader, &options);
+                let (material, losses) = exact_or_shown(&surface, losses, &shader, &options);
                 subject.materials.push(material);
                 subject.losses.push(losses);
             }
@@ -69,13 +79,26 @@ pub fn read(path: &Path, options: ReadOptions) -> Result<Subject, ExchangeError>
 fn exact_or_shown(
     surface: &Surface,
     mut losses: Vec<Entry>,
-    material: Option<Node<'_, '_>>,
-    shader: Node<'_, '_>,
+    shader: &Shader<'_>,
     options: &ReadOptions,
 ) -> (MaterialSettings, Vec<Entry>) {
-    let text = material.and_then(|material| material.attribute(CARRIER));
-    if let Some(exact) = text.filter(|_| !options.is_plain).and_then(carried::from_text) {
-        if shown_by(&exact, shader.has_tag_name("standard_surface")).is_some_and(|shown| is_near(&shown, surface)) {
+    let text = shader.material.and_then(|material| material.attribute(CARRIER));
+    if let Some(mut exact) = text.filter(|_| !options.is_plain).and_then(carried::from_text) {
+        let shown = shown_by(&exact, shader.node.has_tag_name("standard_surface")).map(|shown| Surface {
+            textures: surface.textures,
+            normal_strength: surface.normal_strength,
+            coat_normal_strength: surface.coat_normal_strength,
+            ..shown
+        });
+        let mut textures = surface.user_textures.iter();
+        let has_all = textures.all(|(target, _)| exact.user_textures.get(target).is_some());
+        if has_all && shown.is_some_and(|shown| is_near(&shown, surface)) {
+            // The copies lie beside the file, wherever that is now.
+            for (target, texture) in surface.user_textures.iter() {
+                if let Some(own) = exact.user_textures.get_mut(target) {
+                    own.file.clone_from(&texture.file);
+                }
+            }
             return (exact, Vec::new());
         }
         losses.push(Entry::dropped(
@@ -84,7 +107,12 @@ fn exact_or_shown(
         ));
     }
     let mut material = surface.clone().with_lobe(options.lobe, 1.0);
-    if reflects_exactly(shader) && material.metalness < 1.0 {
+    let varies = |target| surface.user_textures.get(target).is_some();
+    if varies(TextureTarget::CoatRoughness) {
+        // The texture is meant for GGX.
+        material.set_coat_ggx_roughness(surface.coat_roughness, ImportLobe::Ggx);
+    }
+    if reflects_exactly(shader.node) && (material.metalness < 1.0 || varies(TextureTarget::Metalness)) {
         material.fresnel = Fresnel::Dielectric;
     }
     (material, losses)
@@ -98,18 +126,23 @@ fn reflects_exactly(shader: Node<'_, '_>) -> bool {
 
 /// What a file would show into which a material is written.
 fn shown_by(material: &MaterialSettings, is_standard: bool) -> Option<Surface> {
-    let written = write(&Subject::of(material.clone()), is_standard).ok()?;
+    // Of textures the factors are compared.
+    let plain = MaterialSettings {
+        user_textures: UserTextures::default(),
+        ..material.clone()
+    };
+    let written = write(&Subject::of(plain), Path::new(""), is_standard).ok()?;
     let text = String::from_utf8(written.bytes).ok()?;
     let document = Document::parse(&text).ok()?;
-    let (shader, material) = shaders(document.root_element()).into_iter().next()?;
+    let shader = shaders(document.root_element()).into_iter().next()?;
     let (nowhere, loading) = (Path::new(""), Loading::default());
     let images = Images::in_folder(nowhere, &loading);
-    let (surface, _) = read_surface(shader, material, &images, &mut Baker::of(nowhere)).ok()?;
+    let (surface, _) = read_surface(&shader, &images, &mut Baker::of(nowhere)).ok()?;
     Some(surface)
 }
 
 /// Whether two surfaces are the same but for the digits that other programs write.
-fn is_near(a: &Surface, b: &Surface) -> bool {
+pub(in crate::store::exchange) fn is_near(a: &Surface, b: &Surface) -> bool {
     let near = |a: f32, b: f32| (a - b).abs() <= 1e-4 * (1.0 + a.abs());
     let are_near = |parameter: &Parameter| match (parameter.rgb(a), parameter.rgb(b)) {
         (Some(a), Some(b)) => (0..3).all(|i| near(a[i], b[i])),
@@ -119,22 +152,32 @@ fn is_near(a: &Surface, b: &Surface) -> bool {
 }
 
 fn read_surface(
-    shader: Node<'_, '_>,
-    material: Option<Node<'_, '_>>,
+    shader: &Shader<'_>,
     images: &Images<'_>,
     baker: &mut Baker<'_>,
 ) -> Result<(Surface, Vec<Entry>), String> {
-    let named = material.unwrap_or(shader);
+    let named = shader.material.unwrap_or(shader.node);
     let own_name = named.attribute("name").unwrap_or("material");
     let name = named.attribute("uiname").unwrap_or(own_name);
-    let node = shader.tag_name().name();
+    let node = shader.node.tag_name().name();
     let kind = SurfaceKind::named(node).ok_or_else(|| format!("{name} is a {node}"))?;
     let mut inputs = kind.unset();
-    let turn_deg = read_inputs(shader, images, &mut inputs, &mut |input| baker.mean(own_name, input));
-    inputs.losses.extend(material.into_iter().flat_map(others_of_material));
+    let (turn_deg, textures) = read_inputs(shader, images, &mut inputs, &mut |input| baker.mean(own_name, input));
+    inputs
+        .losses
+        .extend(shader.maker.into_iter().flat_map(others_of_material));
     let (mut surface, losses) = kind.surface(inputs);
     surface.name = name.to_owned();
     surface.rotation_deg += turn_deg;
+    for (target, texture, strength) in textures {
+        match target {
+            TextureTarget::Normal => surface.normal_strength = strength,
+            TextureTarget::CoatNormal => surface.coat_normal_strength = strength,
+            _ => {}
+        }
+        surface.user_textures.set(target, Some(texture));
+        surface.textures[target] = true;
+    }
     Ok((surface, losses))
 }
 
@@ -146,30 +189,67 @@ fn others_of_material<'a>(material: Node<'a, 'a>) -> impl Iterator<Item = Entry>
     others.map(|name| Entry::dropped(name, "of a material its surface alone is read"))
 }
 
-/// Fills in the inputs that have a value, in any way, and gives the turn of the tangent in degrees. `baked` is asked for
+/// Fills in the inputs that have a value, in any way, and gives the turn of the tangent in degrees and the textures. `baked` is asked for
 /// what is not computed here.
 fn read_inputs(
-    shader: Node<'_, '_>,
+    shader: &Shader<'_>,
     images: &Images<'_>,
     inputs: &mut Inputs,
     baked: &mut dyn FnMut(&str) -> Result<[f32; 3], String>,
-) -> f32 {
-    let mut turn_deg = 0.0;
-    for input in shader.children().filter(|node| node.has_tag_name("input")) {
+) -> (f32, Vec<(TextureTarget, UserTexture, f32)>) {
+    let (mut turn_deg, mut textures) = (0.0, Vec::new());
+    for input in shader.node.children().filter(|node| node.has_tag_name("input")) {
         let Some(name) = input.attribute("name") else { continue };
-        if let Some(direction) = inputs.row(name).filter(|row| row.default.is_empty()) {
-            match (direction.goes, source_of(input)) {
-                (_, None) => {}
-                (Goes::Nowhere(why), Some(_)) => inputs.losses.push(Entry::dropped(name, why)),
-                (_, Some(source)) => match turn_of(source.node) {
-                    Some(turn) => turn_deg = turn,
-                    None => inputs.losses.push(Entry::dropped(name, "what a graph computes")),
-                },
+        let row = inputs.row(name);
+        if let Some(direction) = row.filter(|row| row.default.is_empty()) {
+            if let Some((target, found, strength)) = normal_map(input, shader, images)
+                && let Some(texture) = found.texture
+            {
+                let told = |note| Entry::approximated(name, note, None);
+                inputs.losses.extend(found.notes.into_iter().map(told));
+                textures.push((target, texture, strength));
+                continue;
+            }
+            let is_connected = ["nodegraph", "nodename", "interfacename"]
+                .iter()
+                .any(|by| input.has_attribute(*by));
+            match (direction.goes, source_of(input).and_then(|source| turn_of(source.node))) {
+                (Goes::Nowhere(why), _) if is_connected => inputs.losses.push(Entry::dropped(name, why)),
+                (Goes::To(_), Some(turn)) => turn_deg = turn,
+                _ if is_connected => inputs.losses.push(Entry::dropped(name, "what a graph computes")),
+                _ => {}
             }
             continue;
         }
-        match worth(input, images) {
+        match worth(input, &shader.within, images) {
             Ok(Some(found)) => {
+                let mut value = found.color();
+                for note in &found.notes {
+                    inputs.losses.push(Entry::approximated(name, note, None));
+                }
+                if let Some(unit) = &found.unit {
+                    match row.and_then(|row| units::factor(unit, row)) {
+                        Some(factor) => value = value.map(|x| x * factor),
+                        None => {
+                            let detail = format!("the unit {unit} is not known; the number is taken as it is");
+                            inputs.losses.push(Entry::approximated(name, detail, None));
+                        }
+                    }
+                }
+                // One channel as a colour is its mean.
+                let is_whole = |texture: &UserTexture| texture.channel == TextureChannel::Auto;
+                let target = row.and_then(target_of).filter(|_| !found.is_computed);
+                let is_taken =
+                    |texture: &UserTexture| is_whole(texture) || target.is_some_and(|target| !target.is_color());
+                if let (Some(target), Some(mut texture)) = (target, found.texture.filter(is_taken)) {
+                    if target.is_number() && is_whole(&texture) {
+                        texture.channel = TextureChannel::Red;
+                    }
+                    let [r, g, b, _] = found.factor;
+                    inputs.set(name, [r, g, b]);
+                    textures.push((target, texture, 1.0));
+                    continue;
+                }
                 let pictures: Vec<String> = found.pictures.iter().map(|file| file.display().to_string()).collect();
                 let of = if found.is_computed {
                     "computed of the mean of"
@@ -180,7 +260,7 @@ fn read_inputs(
                     let detail = format!("{of} {}", pictures.join(", "));
                     inputs.losses.push(Entry::approximated(name, detail, None));
                 }
-                inputs.set(name, found.color());
+                inputs.set(name, value);
             }
             Ok(None) => {}
             Err(Unknown::Computed(kind)) => match baked(name) {
@@ -197,7 +277,43 @@ fn read_inputs(
             Err(Unknown::Missing(what)) => inputs.losses.push(Entry::dropped(name, what)),
         }
     }
-    turn_deg
+    (turn_deg, textures)
+}
+
+/// The image on an input for normals, what that bends, and how steeply.
+fn normal_map<'a>(
+    input: Node<'a, 'a>,
+    shader: &Shader<'a>,
+    images: &Images<'_>,
+) -> Option<(TextureTarget, Worth, f32)> {
+    let target = normal_target(input.attribute("name")?)?;
+    let node = source_of(input)?.node;
+    let (place, strength) = match node.tag_name().name() {
+        "normalmap" => (
+            child(node, "in")?,
+            child(node, "scale").and_then(|input| input.attribute("value")),
+        ),
+        "UsdUVTexture" => (input, None),
+        _ => return None,
+    };
+    let strength = strength.map_or(Some(1.0), |text| text.trim().parse().ok())?;
+    Some((target, worth(place, &shader.within, images).ok()??, strength))
+}
+
+/// What an input for normals bends.
+pub(super) fn normal_target(name: &str) -> Option<TextureTarget> {
+    Some(match name {
+        "normal" | "geometry_normal" => TextureTarget::Normal,
+        "coat_normal" | "geometry_coat_normal" | "clearcoat_normal" => TextureTarget::CoatNormal,
+        _ => return None,
+    })
+}
+
+/// What an image on an input varies here.
+pub(super) fn target_of(row: &FileParameter) -> Option<TextureTarget> {
+    let target = TextureTarget::of_key(row.keys()[0], "").filter(|_| row.per == 1.0)?;
+    // An opacity that holds in one mode alone is a number.
+    (target != TextureTarget::Opacity || row.layer.is_empty()).then_some(target)
 }
 
 /// The turn of a tangent by a node `rotate3d`, degrees.

@@ -7,7 +7,7 @@ const RADIANS_PER_DEGREE: f32 = std::f32::consts::PI / 180.0;
 const TURNS_PER_DEGREE: f32 = 1.0 / 360.0;
 
 const DISPERSION: &str = "dispersion is not shown yet";
-const NORMALS: &str = "textures travel with models; here each parameter has one value";
+const NORMALS: &str = "only a map of normals that is an image is shown";
 const OCCLUSION: &str = "path tracing needs no occlusion";
 const COAT_ALONG: &str = "the coat's highlight lies along the tangent";
 const SCATTERING: &str = "nothing is scattered inside";

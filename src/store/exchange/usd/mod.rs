@@ -1,15 +1,16 @@
 //! USD as text: each material with a UsdPreviewSurface for any reader of USD, and MaterialX's OpenPBR for what reads that.
 
-mod read;
+mod stage;
 
 use std::collections::HashMap;
 use std::fmt::Write as _;
 use std::path::Path;
 
-use super::materialx::{OPEN_PBR, as_open_pbr, written};
+use self::stage::{Prim, Stage};
+use super::materialx::{self, OPEN_PBR, as_open_pbr, written};
 use super::report::Entry;
 use super::surface::{Surface, Takes};
-use super::xml::{identifier, numbers};
+use super::xml::{self, identifier, numbers};
 use super::{ExchangeError, ReadOptions, Subject, Written, carried, shown};
 use crate::document::MaterialSettings;
 use crate::import::FileParameter;
@@ -35,26 +36,74 @@ pub fn write(subject: &Subject, _path: &Path) -> Result<Written, ExchangeError> 
 
 pub fn read(path: &Path, options: ReadOptions) -> Result<Subject, ExchangeError> {
     let bytes = crate::store::file::read(path)?;
-    let shown_by = |material: &MaterialSettings| {
-        let inputs = preview(&Surface::of(material).0).into_iter();
-        let name = |typed: &str| typed.split_once(' ').map_or(typed, |(_, name)| name).to_owned();
-        inputs.map(|(typed, value)| (name(typed), value)).collect()
-    };
-    let found = read::materials(&String::from_utf8_lossy(&bytes)).into_iter();
-    let (materials, losses): (Vec<_>, _) = found
-        .filter_map(|read| read.material(options.lobe, options.is_plain, shown_by))
-        .unzip();
-    if materials.is_empty() {
-        return Err(ExchangeError::NoMaterial {
-            path: path.to_owned(),
-            reason: "it has no UsdPreviewSurface".to_owned(),
-        });
+    let text = String::from_utf8_lossy(&bytes);
+    let (mut subject, mut refused) = (Subject::default(), Vec::new());
+    let stage = Stage::of(&text);
+    for material in stage.materials() {
+        match read_material(&stage, material, path, &options) {
+            Ok(Some((material, losses))) => {
+                subject.materials.push(material);
+                subject.losses.push(losses);
+            }
+            Ok(None) => {}
+            Err(ExchangeError::NoMaterial { reason, .. }) => refused.push(reason),
+            Err(error) => return Err(error),
+        }
     }
-    Ok(Subject {
-        materials,
-        losses,
-        ..Subject::default()
-    })
+    match subject.losses.first_mut() {
+        Some(losses) => losses.extend(refused.into_iter().map(|reason| Entry::dropped("a material", reason))),
+        None => {
+            refused.push("it has no UsdPreviewSurface and no surface of MaterialX".to_owned());
+            return Err(ExchangeError::NoMaterial {
+                path: path.to_owned(),
+                reason: refused.swap_remove(0),
+            });
+        }
+    }
+    Ok(subject)
+}
+
+/// The exact parameters where they are there and show what the surface shows; else what that shows.
+fn read_material(
+    stage: &Stage<'_>,
+    material: &Prim<'_>,
+    path: &Path,
+    options: &ReadOptions,
+) -> Result<Option<(MaterialSettings, Vec<Entry>)>, ExchangeError> {
+    let exact = material.exact().filter(|_| !options.is_plain);
+    let Some((text, mut losses)) = stage.document(material) else {
+        return Ok(exact.or(material.exact()).map(|exact| (exact, Vec::new())));
+    };
+    let wrong = |reason: String| ExchangeError::Contents {
+        path: path.to_owned(),
+        format: "USD",
+        reason,
+    };
+    let document = xml::parse(&text).map_err(wrong)?;
+    let plain = ReadOptions {
+        is_plain: true,
+        ..options.clone()
+    };
+    let mut shown = materialx::read_document(path, &document, plain.clone())?;
+    losses.extend(shown.losses.pop().unwrap_or_default());
+    let Some(shown) = shown.materials.pop() else {
+        return Ok(None);
+    };
+    if let Some(exact) = exact {
+        let written = write(&Subject::of(exact.clone()), path)?;
+        let text = String::from_utf8_lossy(&written.bytes);
+        let stage = Stage::of(&text);
+        let ours = stage
+            .materials()
+            .next()
+            .and_then(|ours| read_material(&stage, ours, path, &plain).ok()?);
+        if ours.is_some_and(|(ours, _)| materialx::is_near(&ours, &shown)) {
+            return Ok(Some((exact, Vec::new())));
+        }
+        let why = "the file was changed since it was exported";
+        losses.insert(0, Entry::dropped("the exact parameters", why));
+    }
+    Ok(Some((shown, losses)))
 }
 
 /// Text in quotation marks.

@@ -1,11 +1,14 @@
-//! Floating-point TIFF images of 16, 32 or 64 bits, by the tiff crate: the image crate only supports colours of 32 bits.
+//! What the tiff crate knows of TIFF images and the image crate does not: floating-point ones of 16, 32 or 64 bits, and
+//! whether opacity multiplies the colours.
 
 use std::io::Cursor;
 
+use image::DynamicImage;
 use tiff::ColorType;
 use tiff::decoder::{Decoder, DecodingResult, Limits};
+use tiff::tags::Tag;
 
-use super::{Decoded, Numbers};
+use super::light;
 
 /// Memory limit of decoding in bytes.
 const DECODED_MAX: usize = 2 << 30;
@@ -23,7 +26,7 @@ fn is_tiff(bytes: &[u8]) -> bool {
 }
 
 /// The image in a file's bytes; `None` if not floating-point.
-pub(super) fn decode(bytes: &[u8]) -> Result<Option<Decoded>, String> {
+pub(super) fn decode(bytes: &[u8]) -> Result<Option<DynamicImage>, String> {
     if !is_tiff(bytes) {
         return Ok(None);
     }
@@ -40,9 +43,7 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Option<Decoded>, String> {
         _ => return Ok(None),
     };
     // 3 is the number of IEEE's numbers in TIFF 6.0.
-    let format = decoder
-        .find_tag_unsigned_vec::<u16>(tiff::tags::Tag::SampleFormat)
-        .map_err(text)?;
+    let format = decoder.find_tag_unsigned_vec::<u16>(Tag::SampleFormat).map_err(text)?;
     if format.and_then(|formats| formats.first().copied()) != Some(3) {
         return Ok(None);
     }
@@ -55,11 +56,15 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Option<Decoded>, String> {
     if numbers.len() != width as usize * height as usize * channels {
         return Err("its channels lie apart; save them interleaved".to_owned());
     }
-    let numbers = Numbers::Light(numbers);
-    Ok(Some(Decoded {
-        width,
-        height,
-        channels,
-        numbers,
-    }))
+    Ok(light([width, height], channels, numbers))
+}
+
+/// Whether an image says that opacity multiplies its colours.
+pub(super) fn is_premultiplied(bytes: &[u8]) -> bool {
+    let extra = is_tiff(bytes).then(|| {
+        let mut decoder = Decoder::new(Cursor::new(bytes)).ok()?;
+        decoder.find_tag_unsigned_vec::<u16>(Tag::ExtraSamples).ok()?
+    });
+    // 1 is the number of associated alpha in TIFF 6.0.
+    extra.flatten().is_some_and(|samples| samples.first() == Some(&1))
 }
