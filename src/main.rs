@@ -7,7 +7,6 @@ use std::process::ExitCode;
 use std::time::{Duration, SystemTime};
 
 use anyhow::Context as _;
-use clap::Parser;
 use glossmith::cli::Arguments;
 use glossmith::console;
 
@@ -27,7 +26,7 @@ fn main() -> ExitCode {
     );
     logger.format(log_line);
     logger.init();
-    let done = run(Arguments::parse());
+    let done = run(glossmith::cli::parse());
     let printed = console::finish().context("standard output could not be written to");
     match done.and(printed) {
         Ok(()) => ExitCode::SUCCESS,

@@ -10,8 +10,9 @@ use crate::app::services::compare::Rival;
 use crate::app::services::library::Change;
 use crate::app::services::workspaces;
 use crate::document::{ImportLobe, MaterialSettings};
+use crate::named::named;
+use crate::render::EngineChoice;
 use crate::render::shown::Shown;
-use crate::render::{EngineChoice, RayQueries};
 use crate::scene::environment::EnvironmentSource;
 use crate::scene::texture::TextureTarget;
 use crate::scene::{ModelOptions, ModelSource};
@@ -67,8 +68,6 @@ pub enum Action {
     /// Looks from a direction: yaw and pitch in degrees.
     LookFrom(f64, f64),
     UseEngine(EngineChoice),
-    /// Changes whether the GPU's engine uses ray queries.
-    UseRayQueries(RayQueries),
     /// Shows the image or a map of its error or samples.
     Show(Shown),
     /// Looks from a bookmark of the camera, by number.
@@ -86,29 +85,14 @@ pub enum Action {
     ImportAs(ImportLobe),
 }
 
-/// Where a command stands in the menus.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Menu {
-    File,
-    Edit,
-    View,
-    Render,
-    Help,
-}
-
-impl Menu {
-    /// All of them, from left to right.
-    pub const ALL: [Self; 5] = [Self::File, Self::Edit, Self::View, Self::Render, Self::Help];
-
-    /// What it is called.
-    pub fn label(self) -> &'static str {
-        match self {
-            Self::File => "File",
-            Self::Edit => "Edit",
-            Self::View => "View",
-            Self::Render => "Render",
-            Self::Help => "Help",
-        }
+named! {
+    /// Where a command stands in the menus, from left to right.
+    Menu {
+        File, "file", "File", "";
+        Edit, "edit", "Edit", "";
+        View, "view", "View", "";
+        Render, "render", "Render", "";
+        Help, "help", "Help", "";
     }
 }
 
@@ -159,9 +143,6 @@ const fn key(key: Key) -> Option<KeyboardShortcut> {
 commands! {
     New, File, "New", "Starts again, with the default model, light and material.", keys(CTRL, Key::N), 0;
     Open, File, "Open…", "Opens a project, a material, a model or an environment.", keys(CTRL, Key::O), 0;
-    OpenModel, File, "Open model…", "Opens a model (.glb, .gltf, .fbx, .obj, .ply, .stl, .zip).", None, 0;
-    OpenEnvironment, File, "Open environment…", "Opens an environment map (.hdr, .exr, .ktx2, .dds, .png, .jpg, .tif, .webp).", keys(CTRL_SHIFT, Key::O), 0;
-    OpenMaterial, File, "Open material…", "Opens a material (.json, .mtlx, or a file of another program that has the exact parameters) into the selected slot.", None, 0;
     OpenMeasured, File, "Open measured material…", "Opens a measured material (.binary of the MERL database) to match looks with.", None, 0;
     ModelFile, File, "Model file…", "What became of the parts of the model's file; its scenes, variants and poses.", None, 0;
     Reload, File, "Reload files", "Reads model and environment again.", keys(CTRL, Key::R), 0;
@@ -214,12 +195,11 @@ commands! {
     Palette, Help, "Find a command…", "Lists every command, panel, parameter, material, environment and recent file; type to search.", keys(CTRL, Key::K), 0;
     Manual, Help, "Manual", "Opens the manual at the page about the panel under the pointer.", key(Key::F1), 0;
     Shortcuts, Help, "Keys and mouse", "Lists shortcuts of keys and mouse.", keys(Modifiers::SHIFT, Key::F1), 0;
-    Benchmark, Help, "Benchmark", "Measures every engine and adapter of this machine, below the checks.", None, 1;
     About, Help, "About Glossmith", "Version, licence and the paper to cite.", None, 1;
 }
 
 /// The command whose keys were pressed, removed from the input. Keys without modifiers belong to what has the focus,
-/// unless that is the viewport.
+/// unless that is the viewport; digits to what has the focus or the pointer.
 pub fn pressed(ctx: &egui::Context, viewport: Option<egui::Id>) -> Option<Command> {
     let focused = ctx.memory(|memory| memory.focused());
     let is_typing = match focused {
@@ -230,9 +210,17 @@ pub fn pressed(ctx: &egui::Context, viewport: Option<egui::Id>) -> Option<Comman
         .iter()
         .filter_map(|command| Some((*command, command.shortcut()?)));
     let all = all.chain([(Command::Redo, KeyboardShortcut::new(CTRL, Key::Y))]);
-    // Function keys type nothing.
-    let is_free = |(_, shortcut): &(Command, KeyboardShortcut)| {
-        !is_typing || shortcut.modifiers.any() || matches!(shortcut.logical_key, Key::F1 | Key::F11)
+    let is_at_viewport = || {
+        let response = viewport.and_then(|id| ctx.read_response(id));
+        focused.is_some() || response.is_some_and(|response| response.contains_pointer())
+    };
+    let is_free = |(_, shortcut): &(Command, KeyboardShortcut)| match shortcut.logical_key {
+        _ if shortcut.modifiers.any() => true,
+        // Function keys type nothing.
+        Key::F1 | Key::F11 => true,
+        // May be meant for a number that was left by Enter.
+        Key::Num0 | Key::Num1 | Key::Num3 | Key::Num5 | Key::Num7 => !is_typing && is_at_viewport(),
+        _ => !is_typing,
     };
     let (first, then): (Vec<_>, Vec<_>) = all.filter(is_free).partition(|(_, shortcut)| shortcut.modifiers.shift);
     // A shortcut without shift would match with it, too.

@@ -195,14 +195,12 @@ impl Desk<'_> {
         *self.document.material_mut(self.shared.selection.slot) = material;
     }
 
-    /// The rows of a group of settings, those that have an effect.
+    /// The rows of a group of settings; those that have no effect are grey, so that none moves under the pointer.
     pub fn settings(&mut self, ui: &mut Ui, group: &str) {
-        for setting in SETTINGS.iter().filter(|setting| setting.group == group) {
-            widgets::comes_and_goes(ui, |ui| {
-                if parameter_row::has_row(setting) && (setting.applies)(self.document) {
-                    self.setting(ui, setting);
-                }
-            });
+        let is_shown = |setting: &&Parameter<Document>| setting.group == group && parameter_row::has_row(setting);
+        for setting in SETTINGS.iter().filter(is_shown) {
+            let applies = (setting.applies)(self.document);
+            ui.add_enabled_ui(applies, |ui| self.setting(ui, setting));
         }
     }
 

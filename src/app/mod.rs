@@ -49,7 +49,7 @@ use sheets::book::Manual;
 use sheets::dialogs::Dialogs;
 use sheets::export::ExportSheet;
 use sheets::menu::{self, Sheet};
-use sheets::status::{self, FrameMeter};
+use sheets::status;
 use sheets::turntable::TurntableSheet;
 use sheets::unsaved::Unsaved;
 use viewport::Viewport;
@@ -57,9 +57,9 @@ use workspaces::Workspaces;
 
 use crate::document::of_model::import_report;
 use crate::document::{Denoise, Document, MaterialSettings};
+use crate::render::EngineChoice;
 use crate::render::queue::Queue;
 use crate::render::worker::{Activity, Event, Level, Scene, Snapshot, Worker};
-use crate::render::{EngineChoice, RayQueries};
 use crate::scene::ModelSource;
 use crate::scene::environment::EnvironmentSource;
 use crate::store::examples::still_life;
@@ -153,7 +153,6 @@ pub struct App {
     unsaved: Unsaved,
     /// The file that a screenshot is wanted for.
     window_picture: Option<PathBuf>,
-    meter: FrameMeter,
     title: String,
     theme: egui::ThemePreference,
 }
@@ -185,9 +184,6 @@ impl App {
             EngineChoice::Auto => kept.engine,
             given => given,
         };
-        if RayQueries::chosen() == RayQueries::Auto {
-            kept.ray_queries.choose();
-        }
         let worker = Worker::spawn(engine, repaint())?;
         let queue = Queue::new(worker.assets().clone(), repaint())?;
         let document = options
@@ -215,7 +211,6 @@ impl App {
                 rendering: Rendering {
                     engine,
                     kept_engine: kept.engine,
-                    kept_ray_queries: kept.ray_queries,
                     is_paused: false,
                     is_measuring: false,
                 },
@@ -255,7 +250,6 @@ impl App {
             leftovers: Vec::new(),
             unsaved: Unsaved::default(),
             window_picture: None,
-            meter: FrameMeter::default(),
             title: String::new(),
             theme: kept.theme,
         };
@@ -452,7 +446,7 @@ impl App {
             .exact_size(theme::BAR_HEIGHT)
             .show(ui, |ui| {
                 let has_numbers = self.workspaces.current() == workspaces::MEASURE;
-                status::show(ui, &snapshot, &self.meter, has_numbers, actions);
+                status::show(ui, &snapshot, has_numbers, actions);
             });
         let ground = frame(theme::ground(ui.visuals().dark_mode), 0);
         egui::CentralPanel::default().frame(ground).show(ui, |ui| {
@@ -528,10 +522,8 @@ fn is_dragging(ctx: &egui::Context) -> bool {
 }
 
 impl eframe::App for App {
-    fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
+    fn ui(&mut self, ui: &mut Ui, _: &mut eframe::Frame) {
         let ctx = ui.ctx().clone();
-        let is_running = ctx.requested_repaint_last_pass();
-        self.meter.begin(Instant::now(), is_running, frame.info().cpu_usage);
         settings::fit_to_screen(&ctx);
         self.take_events(&ctx);
         self.watch_files();
@@ -568,6 +560,7 @@ impl eframe::App for App {
         }
         self.record_and_submit(&ctx);
         self.hand_over_pictures(&ctx);
+        self.retake_snapshot();
         self.hold_thumbnails(&ctx);
         self.save_for_recovery(&ctx);
         self.guard_close(&ctx);
@@ -576,7 +569,6 @@ impl eframe::App for App {
 
     fn on_exit(&mut self) {
         self.autosave.end();
-        log::info!("{}", self.meter.summary());
     }
 
     fn save(&mut self, storage: &mut dyn eframe::Storage) {
@@ -589,7 +581,6 @@ impl eframe::App for App {
             resolution: self.shared.viewing.resolution,
             import_lobe: self.shared.import_lobe,
             engine: self.shared.rendering.kept_engine,
-            ray_queries: self.shared.rendering.kept_ray_queries,
             denoise: self.document.view.denoise,
             recent: self.shared.recent.paths.clone(),
             shelves: self.shared.shelves.kept.clone(),

@@ -11,8 +11,8 @@ use crate::app::services::viewing::Resolution;
 use crate::app::workspaces::Workspaces;
 use crate::document::{Denoise, ImportLobe};
 use crate::import::limits;
+use crate::render::EngineChoice;
 use crate::render::denoise::Library;
-use crate::render::{EngineChoice, RayQueries};
 
 /// Under which the window's state is stored.
 const KEY: &str = "editor";
@@ -99,8 +99,6 @@ pub struct KeptSettings {
     pub import_lobe: ImportLobe,
     /// The engine as it was chosen by hand.
     pub engine: EngineChoice,
-    /// Whether the GPU's engine uses ray queries, as it was chosen by hand.
-    pub ray_queries: RayQueries,
     /// How images were denoised last: new documents begin with that.
     #[serde(default = "first_denoise")]
     pub denoise: Denoise,
@@ -120,7 +118,6 @@ impl Default for KeptSettings {
             resolution: Resolution::default(),
             import_lobe: ImportLobe::default(),
             engine: EngineChoice::Auto,
-            ray_queries: RayQueries::Auto,
             denoise: Denoise::Off,
             recent: Vec::new(),
             shelves: KeptShelves::default(),

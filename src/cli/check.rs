@@ -7,7 +7,7 @@ use std::sync::atomic::AtomicBool;
 use anyhow::bail;
 use clap::Args;
 
-use super::answer::{Destination, write_json};
+use super::answer::Answer;
 use super::parse::check_writable;
 use crate::console::{message, output};
 use crate::document::parameter::nearest;
@@ -28,9 +28,8 @@ pub struct CheckArguments {
     /// List every check, not only those that fail.
     #[arg(long)]
     verbose: bool,
-    /// Write all checks as JSON; - is standard output, in place of the table.
-    #[arg(long, visible_alias = "json", value_name = "FILE|-")]
-    output: Option<Destination>,
+    #[command(flatten)]
+    answer: Answer,
     /// Run the hard cases instead: places where naive code breaks, each with its verdict.
     #[arg(long)]
     hard: bool,
@@ -40,13 +39,6 @@ pub struct CheckArguments {
     /// Write the hard cases as a table in Markdown, on this engine and on the CPU.
     #[arg(long, value_name = "FILE.md", requires = "hard")]
     markdown: Option<PathBuf>,
-}
-
-impl CheckArguments {
-    /// Whether words have a place on standard output.
-    fn has_words(&self) -> bool {
-        self.output != Some(Destination::Output)
-    }
 }
 
 /// Text that is in the name of a hard case.
@@ -70,7 +62,7 @@ fn part_of_name(text: &str) -> Result<String, String> {
 /// # Errors
 /// Where a check fails, the engine does, or the file can't be written.
 pub fn run(arguments: &CheckArguments) -> anyhow::Result<()> {
-    arguments.output.iter().try_for_each(Destination::check_writable)?;
+    arguments.answer.check_writable()?;
     arguments.markdown.iter().try_for_each(|path| check_writable(path))?;
     if arguments.hard {
         return run_hard(arguments);
@@ -87,7 +79,7 @@ pub fn run(arguments: &CheckArguments) -> anyhow::Result<()> {
         }
     };
     let checks = run_checks(options, &never, progress)?.unwrap_or_default();
-    if arguments.has_words() {
+    if arguments.answer.has_words() {
         print_table(&checks, arguments.verbose);
     }
     conclude(arguments, &checks)
@@ -95,18 +87,15 @@ pub fn run(arguments: &CheckArguments) -> anyhow::Result<()> {
 
 /// Writes the checks where that is wanted, and fails where one failed.
 fn conclude(arguments: &CheckArguments, checks: &[Check]) -> anyhow::Result<()> {
-    if let Some(destination) = &arguments.output {
-        let answer = serde_json::json!({
-            "version": env!("CARGO_PKG_VERSION"),
-            "passed": checks.iter().all(|check| check.passed),
-            "checks": checks,
-        });
-        write_json(destination, &answer)?;
-    }
     let failed = checks.iter().filter(|check| !check.passed).count();
+    arguments.answer.write(&serde_json::json!({
+        "version": env!("CARGO_PKG_VERSION"),
+        "passed": failed == 0,
+        "checks": checks,
+    }))?;
     if failed > 0 {
         bail!(
-            "{failed} of {} checks failed on this machine; please report them with the JSON of --output",
+            "{failed} of {} checks failed on this machine; please report them with the answer of --json",
             checks.len()
         );
     }
@@ -124,7 +113,7 @@ fn run_hard(arguments: &CheckArguments) -> anyhow::Result<()> {
         hard::run(&options, |name| message!("{name} …"))
     };
     let (engine, rows) = run_on(arguments.engine)?;
-    if arguments.has_words() {
+    if arguments.answer.has_words() {
         print_hard(&engine, &rows, arguments.verbose);
     }
     let checks: Vec<Check> = rows.iter().map(|row| row.check.clone()).collect();

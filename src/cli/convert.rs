@@ -20,7 +20,7 @@ use crate::store::replace::save_atomically;
 
 /// Arguments of `glossmith convert`.
 #[derive(Debug, Args)]
-#[command(after_help = formats_help())]
+#[command(after_help = formats_help(), override_usage = "glossmith convert [OPTIONS] <IN>... <OUT>")]
 pub struct ConvertArguments {
     /// What to convert, then where to: materials, projects or models, or names of shipped materials; then a file, or a
     /// folder with --to.
@@ -40,7 +40,7 @@ pub struct ConvertArguments {
     without_exact: bool,
     /// Write what was exact, approximated and dropped, as JSON; - is standard output. Beside a file go images of a ball with
     /// each material, with what the file shows, and of their difference.
-    #[arg(long, visible_alias = "json", value_name = "FILE|-")]
+    #[arg(long = "json", alias = "report", value_name = "FILE|-")]
     report: Option<Destination>,
 }
 

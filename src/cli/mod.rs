@@ -32,7 +32,7 @@ mod turntable;
 use std::iter;
 use std::path::PathBuf;
 
-use clap::{CommandFactory, Parser, Subcommand};
+use clap::{Arg, CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use crate::document::parameter::nearest;
 use crate::instructions::Instructions;
@@ -137,18 +137,91 @@ subcommands! {
     Manual(shell::ManualArguments) => shell::manual;
 }
 
+/// Headings with the options below them, by their names in the program; those with a plus are in the short help.
+const HEADINGS: [(&str, &str); 7] = [
+    (
+        "Model",
+        "+model scene variant time_of_pose texture_size import_report import_lobe",
+    ),
+    (
+        "Light",
+        "+environment environment_encoding environment-rotation environment-strength area_lights spots suns light_mix \
+         light-groups scene-unit background background-blur +ground ground-kind ground-color ground-reflection \
+         ground-roughness cyclorama-turn cyclorama-wall cyclorama-bend",
+    ),
+    ("Material", "+material textures +assignments"),
+    (
+        "Camera and image",
+        "+camera_orbit fov projection camera-distance camera-target camera-position camera-roll aperture focus-distance \
+         +size region lut tone-map exposure auto-exposure white-balance contrast saturation vignette glare +denoise",
+    ),
+    (
+        "Rendering",
+        "+samples time +noise min-samples adaptive bounces strategy light-paths sequence filter firefly-clamp seed \
+         effects +engine",
+    ),
+    ("Layers and parts", "aovs keep_sums samples_from samples_to"),
+    ("Machine", "instructions ray_queries denoise_device allow_outside"),
+];
+
+/// Options of the machine, with the commands that have no use for them.
+const UNUSED: [(&str, &str); 4] = [
+    (
+        "instructions",
+        "scatter evaluate fit convert merge lobe completions manual",
+    ),
+    (
+        "ray_queries",
+        "plan explain scatter evaluate fit convert merge lobe completions manual",
+    ),
+    (
+        "denoise_device",
+        "plan explain check scatter evaluate fit convert lobe completions manual",
+    ),
+    ("allow_outside", "check benchmark scatter merge lobe completions manual"),
+];
+
+/// The arguments as they are given; ends the program where they are wrong.
+pub fn parse() -> Arguments {
+    Arguments::from_arg_matches(&command().get_matches()).unwrap_or_else(|error| error.exit())
+}
+
+/// The program with its options under headings.
+fn command() -> clap::Command {
+    let program = Arguments::command().mut_args(arranged);
+    let program = program.mut_subcommands(|command| command.mut_args(arranged));
+    UNUSED.into_iter().fold(program, |program, (name, commands)| {
+        let option = program.get_arguments().find(|option| option.get_id() == name).cloned();
+        let hidden = option.map(|option| option.hide(true));
+        commands.split(' ').fold(program, |program, command| {
+            program.mut_subcommand(command, |command| command.args(hidden.clone()))
+        })
+    })
+}
+
+/// An option under its heading; the short help has its first sentence, where it has it at all.
+fn arranged(option: Arg) -> Arg {
+    let name = option.get_id().to_string();
+    let help = option.get_help().map(ToString::to_string).unwrap_or_default();
+    let first = help.split(". ").next().unwrap_or_default().to_owned();
+    let is_output = option.get_long() == Some("output");
+    let mut option = option.help(first).long_help(help);
+    for (heading, names) in HEADINGS {
+        if let Some(found) = names.split(' ').find(|found| found.trim_start_matches('+') == name) {
+            option = option.help_heading(heading).hide_short_help(!found.starts_with('+'));
+        }
+    }
+    if is_output { option.short('o') } else { option }
+}
+
 /// Commands by names that they do not have.
-const OTHER_NAMES: [(&str, &str); 14] = [
+const OTHER_NAMES: [(&str, &str); 10] = [
     ("animate", "turntable"),
     ("bench", "benchmark"),
-    ("effects", "plan"),
     ("export", "convert"),
     ("import", "convert"),
-    ("join", "merge"),
     ("match", "fit"),
-    ("plot", "lobe"),
     ("race", "study accuracy"),
-    ("sample", "scatter"),
     ("test", "check"),
     ("trace", "explain"),
     ("verify", "check"),

@@ -38,13 +38,7 @@ fn print(plan: &Plan) {
         let word = if decision.is_on { "on" } else { "off" };
         output!("{:width$}  {word:3}  {}", effect.name(), decision.reason);
     }
-    output!(
-        "{} of {} features active; {} of {} compile-time switches off or fixed",
-        plan.effects().len(),
-        plan.table().count(),
-        plan.left_out(),
-        plan.constants().len()
-    );
+    output!("{} of {} features active", plan.effects().len(), plan.table().count());
 }
 
 fn json(plan: &Plan) -> serde_json::Value {

@@ -20,7 +20,7 @@ use crate::render::denoise::Denoised;
 use crate::render::display::display;
 use crate::render::light_layers::LightLayer;
 use crate::render::output::{self, Format, Rendered};
-use crate::render::{EngineChoice, Progress, Session, StepDenoiser, StopReason, to_end};
+use crate::render::{EngineChoice, Progress, Session, StepDenoiser, StopReason, beyond_bounces, to_end};
 use crate::scene::Loading;
 
 /// Time limit of the image that is rendered where no window can be opened, seconds.
@@ -47,7 +47,7 @@ pub struct RenderArguments {
     #[arg(long, value_name = "N")]
     samples_to: Option<u32>,
     /// Write what was rendered, how and how fast, as JSON; - is standard output.
-    #[arg(long, visible_alias = "json", value_name = "FILE|-")]
+    #[arg(long = "json", alias = "report", value_name = "FILE|-")]
     report: Option<Destination>,
 }
 
@@ -81,10 +81,11 @@ impl RenderArguments {
 /// # Errors
 /// One line that names the file, what is wrong and what to do.
 pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
-    for path in arguments.outputs.iter().chain(&arguments.scene.import_report) {
+    for path in &arguments.outputs {
         parse::check_writable(path)?;
     }
-    arguments.report.iter().try_for_each(Destination::check_writable)?;
+    let mut answers = arguments.report.iter().chain(&arguments.scene.import_report);
+    answers.try_for_each(Destination::check_writable)?;
     if arguments.aovs {
         check_takes("--aovs", &arguments.outputs)?;
     }
@@ -153,7 +154,7 @@ fn render(mut session: Session, document: &Document, begun: Instant, targets: &R
     write_pictures(&targets.outputs, rendered, document)?;
     // Words come after the image: who does not read them must not hold it up.
     let cut = session.film()?.cut_share();
-    message!("{}{}", summary(&progress), beyond_bounces(cut, document));
+    message!("{}{}", summary(&progress), beyond_bounces(cut, document.render.bounces));
     report_written(&targets.outputs);
     if let Some(destination) = &targets.report {
         let mut report = json_report(&mut session, document, setup_seconds, progress, targets.aovs)?;
@@ -323,19 +324,6 @@ fn summary(progress: &Progress) -> String {
         (false, _, None) => ", less exact than was asked for: it was ended early",
     };
     format!("{samples}: error {error:.2} % ({low:.2} to {high:.2} %){denoised}{why}")
-}
-
-/// The share of light that the error does not know of: what the last bounce would have scattered on.
-fn beyond_bounces(cut: f64, document: &Document) -> String {
-    const LEAST_TOLD: f64 = 5e-4;
-    if cut < LEAST_TOLD {
-        return String::new();
-    }
-    format!(
-        ", and up to {:.1} % beyond {} bounces",
-        100.0 * cut,
-        document.render.bounces
-    )
 }
 
 /// The report of `--report`.

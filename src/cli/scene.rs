@@ -6,6 +6,7 @@ use std::str::FromStr as _;
 use anyhow::bail;
 use clap::Args;
 
+use super::answer::{Destination, write_json};
 use super::lights::{self, LightArgument};
 use super::settings::SettingOptions;
 use super::textures::{self, TextureArgument};
@@ -21,7 +22,6 @@ use crate::store::exchange::{self, ReadOptions};
 use crate::store::file_kind::{FileKind, may_hold_document, what_is_opened};
 use crate::store::lut;
 use crate::store::opened::Opened;
-use crate::store::replace::save_atomically;
 
 /// Arguments that describe what is rendered, and how. Options override what files say.
 #[derive(Debug, Default, Args)]
@@ -46,9 +46,9 @@ pub struct SceneArguments {
     /// The longest side of a model's textures in texels; larger ones are halved until they fit [default: 8192].
     #[arg(long, value_name = "N", value_parser = parse::number_in(range::TEXTURE_SIDE))]
     texture_size: Option<f64>,
-    /// Write what became of the parts of the model's file (used, approximated, ignored, missing), as JSON.
-    #[arg(long, value_name = "FILE")]
-    pub import_report: Option<PathBuf>,
+    /// Write what became of the parts of the model's file (used, approximated, ignored, missing), as JSON; - is standard output.
+    #[arg(long, value_name = "FILE|-")]
+    pub import_report: Option<Destination>,
     /// Where the light comes from: a built-in environment (product, studio, portrait, rim, warehouse, overcast, sky,
     /// furnace), an image of the whole sphere (.hdr, .exr, .ktx2, .dds, .png, .jpg, .tif, .webp; lat-long or cube map), or a
     /// folder with the six faces of a cube [default: product].
@@ -229,13 +229,18 @@ impl SceneArguments {
         import.texture_side_max = self.texture_size.map_or(import.texture_side_max, |side| side as u32);
         let takes_materials = source.is_some() || self.scene.is_some() || self.variant.is_some();
         document.model = source.unwrap_or(document.model.clone());
-        self.import_report
-            .iter()
-            .try_for_each(|path| parse::check_writable(path))?;
+        self.import_report.iter().try_for_each(Destination::check_writable)?;
         let model = session.assets().model(&document.model, &document.import)?;
         self.check_choices(document, &model)?;
-        if let Some(path) = &self.import_report {
-            write_import_report(path, &model, self.import_lobe)?;
+        if let Some(destination) = &self.import_report {
+            let report = serde_json::json!({
+                "model": model.name,
+                "entries": import_report(&model, self.import_lobe).entries,
+                "scenes": model.scenes,
+                "variants": model.variants,
+                "animation_seconds": model.duration_s,
+            });
+            write_json(destination, &report)?;
         }
         let has_materials = matches!(document.model, ModelSource::File(_));
         if takes_materials && has_materials {
@@ -379,18 +384,4 @@ pub fn material(name: &str, lobe: ImportLobe) -> anyhow::Result<MaterialSettings
 
 fn warn(warnings: &[String]) {
     warnings.iter().for_each(|warning| log::warn!("{warning}"));
-}
-
-/// What became of the parts of a model's file, as JSON.
-fn write_import_report(path: &Path, model: &Model, lobe: ImportLobe) -> anyhow::Result<()> {
-    let json = serde_json::json!({
-        "model": model.name,
-        "entries": import_report(model, lobe).entries,
-        "scenes": model.scenes,
-        "variants": model.variants,
-        "animation_seconds": model.duration_s,
-    });
-    let text = serde_json::to_string_pretty(&json)?;
-    save_atomically(path, text.as_bytes())?;
-    Ok(())
 }

@@ -38,7 +38,7 @@ pub fn completions(arguments: &CompletionsArguments) -> anyhow::Result<()> {
 /// # Errors
 /// Where there is no such subcommand.
 pub fn manual(arguments: &ManualArguments) -> anyhow::Result<()> {
-    let mut command = Arguments::command();
+    let mut command = super::command();
     // Gives subcommands their names in full: glossmith render.
     command.build();
     if let Some(name) = &arguments.subcommand {
@@ -46,7 +46,10 @@ pub fn manual(arguments: &ManualArguments) -> anyhow::Result<()> {
         command = found.with_context(|| format!("{name}: no such command; {}", super::meant(name)))?;
     }
     let mut page = Vec::new();
-    clap_mangen::Man::new(command).render(&mut page)?;
+    let usage = command.render_usage().to_string();
+    let command = command.override_usage(usage.trim_start_matches("Usage: ").to_owned());
+    let source = concat!("glossmith ", env!("CARGO_PKG_VERSION"));
+    clap_mangen::Man::new(command).source(source).render(&mut page)?;
     print_bytes(&page);
     Ok(())
 }

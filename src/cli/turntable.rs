@@ -43,7 +43,7 @@ pub struct TurntableArguments {
     #[arg(long, default_value_t = FPS, value_name = "N", allow_negative_numbers = true, value_parser = parse::number_in(video::FPS))]
     fps: f64,
     /// Write what was rendered, how and how fast, as JSON; - is standard output.
-    #[arg(long, visible_alias = "json", value_name = "FILE|-")]
+    #[arg(long = "json", alias = "report", value_name = "FILE|-")]
     report: Option<Destination>,
     #[command(flatten)]
     scene: SceneArguments,

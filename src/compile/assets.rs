@@ -353,7 +353,8 @@ impl Cache {
             return Ok(environment);
         }
         let environment = import::environment::load_watched(&source, encoding, loading)?;
-        environment.warnings.iter().for_each(|warning| log::warn!("{warning}"));
+        let warnings = environment.warnings.iter();
+        warnings.for_each(|warning| log::warn!("{source}: {warning}"));
         Ok(self.put(key, environment))
     }
 

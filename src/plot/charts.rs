@@ -136,10 +136,27 @@ impl Figure for PictureSheet {
             let [column, row] = [index % PICTURES_ACROSS, index / PICTURES_ACROSS].map(|i| i as f64);
             let [x, y] = [MARGIN + column * width, TITLE + row * height];
             drawing.picture_at([x, y], picture);
-            drawing.text(name.as_str(), [x, y + f64::from(picture.height()) + 11.0], 14.0, LEFT);
+            drawing.text(
+                elided(name, width - MARGIN),
+                [x, y + f64::from(picture.height()) + 11.0],
+                14.0,
+                LEFT,
+            );
         }
         drawing
     }
+}
+
+/// A caption that fits into so many pixels: names of a batch differ at both ends.
+fn elided(name: &str, width: f64) -> String {
+    const OF_A_LETTER: f64 = 7.5;
+    let (letters, most): (Vec<char>, _) = (name.chars().collect(), (width / OF_A_LETTER) as usize);
+    if letters.len() <= most {
+        return name.to_owned();
+    }
+    let end = most / 2;
+    let part = |letters: &[char]| letters.iter().collect::<String>();
+    part(&letters[..most - end - 1]) + "…" + &part(&letters[letters.len() - end..])
 }
 
 /// Samples of a lobe, seen against their middle.

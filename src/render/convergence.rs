@@ -56,6 +56,8 @@ pub struct Convergence {
     pub goals: Vec<u32>,
     /// Measurements, oldest first.
     pub history: Vec<Measurement>,
+    /// Share of the image's energy beyond the last bounce when the error was last looked at.
+    pub cut_share: f64,
     /// Samples of all pixels when the error was last looked at.
     measured_samples: u64,
     /// Time of a measurement and of planning in seconds: the minimum so far, because other work may disturb it.
@@ -100,6 +102,7 @@ impl Convergence {
     /// Measures the error of the rendered part.
     pub fn measure(&mut self, film: &Film, schedule: &Schedule, settings: &RenderSettings, engine_seconds: f64) {
         self.measured_samples = schedule.pixel_samples();
+        self.cut_share = film.cut_share();
         let grid = schedule.grid();
         let seen = match settings.region {
             Some(_) => noise(&film.of_pixels(|pixel| grid.is_rendered(grid.of_pixel(pixel), settings.region))),

@@ -36,6 +36,6 @@ pub use engine::{EngineChoice, EngineInfo, EngineKind, Precision, RayQueries, Sa
 pub(crate) use engine::{cpu_name, device_for_functions};
 pub use error::SessionError;
 pub use output::Layers;
-pub use progress::{Progress, StopReason};
+pub use progress::{Progress, StopReason, beyond_bounces};
 pub use session::Session;
 pub use step_denoiser::StepDenoiser;

@@ -15,6 +15,16 @@ pub enum StopReason {
     Noise,
 }
 
+/// What to say of the share of the light that lies beyond the last bounce; nothing where there is little.
+pub fn beyond_bounces(cut: f64, bounces: u32) -> String {
+    const LEAST_TOLD: f64 = 5e-4;
+    if cut < LEAST_TOLD {
+        return String::new();
+    }
+    let s = if bounces == 1 { "" } else { "s" };
+    format!(", and up to {:.1} % beyond {bounces} bounce{s}", 100.0 * cut)
+}
+
 /// Progress of a render.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Progress {
@@ -34,6 +44,8 @@ pub struct Progress {
     pub measure_seconds: f64,
     /// The error when it was last looked at.
     pub noise: Option<Noise>,
+    /// Estimated share of the image's energy beyond the last bounce, when the error was last looked at.
+    pub cut_share: f64,
     /// The relative error to reach.
     pub noise_wanted: Option<f64>,
     /// Estimated error of the denoised image, see [`Session::denoised`](super::Session::denoised).
@@ -55,6 +67,11 @@ impl Progress {
     pub fn is_converged(&self) -> bool {
         let pair = self.stop_error().zip(self.noise_wanted);
         pair.is_some_and(|(error, wanted)| error <= wanted)
+    }
+
+    /// Samples per pixel after which the error would be down to this, as far as it is known.
+    pub fn samples_to(&self, noise: f64) -> Option<f64> {
+        Some(self.mean_samples * (self.stop_error()? / noise).powi(2))
     }
 
     /// Error used for the stop criterion: raw, or denoised if enabled and lower.

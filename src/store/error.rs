@@ -35,8 +35,8 @@ pub enum FileError {
     #[error("{}: names files outside of its surroundings, which are read only where that is allowed: {}; where you trust it, allow them (--allow-outside)", path.display(), list(files))]
     Outside { path: PathBuf, files: Vec<PathBuf> },
     /// No such preset, no such file.
-    #[error("no material is called {name} and there is no such file; the shipped ones are {known}")]
-    UnknownMaterial { name: String, known: String },
+    #[error("no material is called {name} and there is no such file; {hint}")]
+    UnknownMaterial { name: String, hint: String },
     /// The file cannot be written.
     #[error("{}: cannot be saved: {source}; check the folder's permissions and free space", path.display())]
     Write { path: PathBuf, source: io::Error },

@@ -13,7 +13,7 @@ use super::own;
 use super::replace::save_atomically;
 use super::{FileError, Loaded, file};
 use crate::document::material::FILM_THICKNESS_MAX;
-use crate::document::parameter::nearest_key;
+use crate::document::parameter::{nearest, nearest_key};
 use crate::document::{MaterialSettings, PARAMETERS, ParameterError, TextureError, texture_from_json, texture_to_json};
 use crate::import::kept_keys;
 use crate::optics::layer::fuzz::fuzz_of_sheen;
@@ -116,9 +116,16 @@ pub fn find(name_or_path: &str) -> Result<Loaded<MaterialSettings>, FileError> {
             .iter()
             .map(|material| command_line_name(&material.name))
             .collect();
+        let near = nearest(
+            &command_line_name(name_or_path),
+            known.iter().map(|name| (name.as_str(), name)),
+        );
         return Err(FileError::UnknownMaterial {
             name: name_or_path.to_owned(),
-            known: known.join(", "),
+            hint: match near {
+                Some(near) => format!("did you mean {near}?"),
+                None => format!("the shipped ones are {}", known.join(", ")),
+            },
         });
     }
     open_material(path, &file::read(path)?)

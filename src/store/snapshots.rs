@@ -65,13 +65,18 @@ pub fn add(folder: &Path, document: &Document, picture: &RgbaImage) -> Result<Pa
     fs::create_dir_all(folder).map_err(FileError::writing(folder))?;
     let first = document.materials.first().map_or("", |material| material.name.as_str());
     let path = free_path(folder, &file_stem(first), ".png");
+    save(&path, document, picture)?;
+    Ok(path)
+}
+
+/// Writes a pinned state.
+pub fn save(path: &Path, document: &Document, picture: &RgbaImage) -> Result<(), FileError> {
     let longest = picture.width().max(picture.height()).max(SIDE_MAX);
     let side = |side: u32| (side * SIDE_MAX / longest).max(1);
     let picture = image::imageops::thumbnail(picture, side(picture.width()), side(picture.height()));
-    let text = document_text(&path, document)?;
+    let text = document_text(path, document)?;
     let bytes = png_bytes(picture.dimensions().into(), &picture, Some(&text));
-    save_atomically(&path, &bytes.map_err(|reason| FileError::content(&path, reason))?)?;
-    Ok(path)
+    save_atomically(path, &bytes.map_err(|reason| FileError::content(path, reason))?)
 }
 
 /// Gives a pinned state another name, beside one that has it already; what files can't be called is left out.

@@ -114,6 +114,11 @@ pub struct Runner {
 }
 
 impl Runner {
+    /// Whether of the bias only an upper limit is known.
+    pub fn is_limit(&self) -> bool {
+        !self.is_unbiased && !self.bias.is_resolved()
+    }
+
     /// The bias, or 0 if not significant.
     pub fn resolved_bias(&self) -> f64 {
         if self.is_unbiased || !self.bias.is_resolved() {
@@ -125,10 +130,10 @@ impl Runner {
 
     /// Bias in a logarithmic chart: at least the smallest resolvable one.
     pub fn charted_bias(&self, least: f64) -> f64 {
-        let value = if self.bias.is_resolved() || self.is_unbiased {
-            self.bias.value
-        } else {
+        let value = if self.is_limit() {
             self.bias.high
+        } else {
+            self.bias.value
         };
         value.max(least)
     }

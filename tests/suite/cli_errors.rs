@@ -46,6 +46,10 @@ fn bad_materials_are_refused() {
         ("other.json", ["not a Glossmith material", "choose a file"]),
         ("missing.json", ["cannot be read", "check the path"]),
         ("unobtainium", ["no material is called", "porcelain"]),
+        (
+            "lacquered-walnuts",
+            ["no material is called", "did you mean lacquered-walnut?"],
+        ),
     ] {
         place.refused(
             1,

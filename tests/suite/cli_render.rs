@@ -198,4 +198,20 @@ fn help_and_version_are_no_errors() {
     for arguments in ["--help", "render --help", "scatter --help"] {
         assert!(place.done(arguments).stdout.contains("Usage: glossmith"), "{arguments}");
     }
+    let short = place.done("render -h").stdout;
+    assert!(short.lines().count() < 60, "{short}");
+    for (arguments, has, lacks) in [
+        ("render -h", "Light:", "--ray-queries"),
+        ("render --help", "--ray-queries", "Options of"),
+        ("convert --help", "--allow-outside", "--ray-queries"),
+        ("convert --help", "<IN>... <OUT>", "--denoise-device"),
+        ("manual render", "[OPTIONS]", "aovs\\fR] ["),
+    ] {
+        let text = place.done(arguments).stdout;
+        assert!(text.contains(has) && !text.contains(lacks), "{arguments}: {text}");
+    }
+    // An answer of - goes to standard output.
+    let scene = "render --model sphere --engine cpu --size 8x8 --samples 1 -o o.png --import-report -";
+    assert!(place.done(scene).stdout.contains("entries"));
+    assert!(place.path("o.png").is_file() && !place.path("-").exists());
 }

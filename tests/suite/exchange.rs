@@ -131,18 +131,7 @@ fn total_variation(a: &LobeModel, b: &LobeModel) -> f64 {
     0.5 * pairs.map(|(a, b)| (a / a_sum - b / b_sum).abs()).sum::<f64>()
 }
 
-/// The base's index relative to what is before it, a coat that acts on the base included.
-fn ior_under_coat(material: &MaterialSettings) -> f64 {
-    let [ior, coat] = [material.ior, material.coat_ior].map(f64::from);
-    let share = if material.coat_on_base {
-        f64::from(material.coat_weight)
-    } else {
-        0.0
-    };
-    ior + (ior.max(coat) / ior.min(coat) - ior) * share
-}
-
-/// The largest difference of the reflectances by the angle at the half vector.
+/// The largest difference of the reflectances by the angle at the half vector; what a coat changes is a loss of its own.
 fn reflectance_apart(a: &MaterialSettings, b: &MaterialSettings) -> f64 {
     let terms = |m: &MaterialSettings| FresnelTerms {
         // Only the exact equations know total reflection.
@@ -163,8 +152,8 @@ fn reflectance_apart(a: &MaterialSettings, b: &MaterialSettings) -> f64 {
             false => f64::from(m.specular_weight),
         },
         ior: match m.has_weight_in_index() {
-            true => weighted_ior(ior_under_coat(m), m.specular_weight.into()),
-            false => ior_under_coat(m),
+            true => weighted_ior(f64::from(m.ior), m.specular_weight.into()),
+            false => f64::from(m.ior),
         },
         eta: Vec3::from_f32(m.eta),
         k: Vec3::from_f32(m.k),

@@ -77,7 +77,7 @@ fn the_sheet_tells_what_became_of_the_file_and_changes_the_variant() {
         app.document().model == ModelSource::File(path.clone())
     });
     harness.command(Command::ModelFile);
-    see_label(&mut harness, "Missing");
+    see_label(&mut harness, "missing");
     let named = harness.query_all_by_label_contains("bark").count();
     assert!(named > 0, "the texture is named");
     harness.tap(Role::ComboBox, "Variant");

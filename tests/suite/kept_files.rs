@@ -80,7 +80,7 @@ fn every_target_is_asked_before_the_work() {
         ("none/s.csv", "scatter --lobe ggx --count 100000000 --output none/s.csv"),
         ("folder.png", "scatter --lobe ggx --count 100000000 --output folder.png"),
         ("folder.png", "lobe --plot polar --lobe ggx:0.3 --output folder.png"),
-        ("none/c.json", "check --output none/c.json"),
+        ("none/c.json", "check --json none/c.json"),
         ("folder.json", "fit --target ggx:0.3 --output folder.json"),
     ] {
         place.refused(1, arguments, &[target]);

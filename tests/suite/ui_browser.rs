@@ -86,6 +86,11 @@ fn presets_are_found_by_their_look() {
         search(&mut harness, words);
         assert!(has(&harness, found) && !has(&harness, other), "{words}");
     }
+    // Names before groups.
+    search(&mut harness, "car paint");
+    let first = place(&harness, "Car paint red").min;
+    let other = place(&harness, "Lacquered walnut").min;
+    assert!((first.y, first.x) < (other.y, other.x));
 }
 
 /// A preset chooses the slots that have it, and takes the place of the edited material wherever that is used.

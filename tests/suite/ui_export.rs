@@ -33,6 +33,7 @@ fn what_an_export_loses_is_shown_before_it_is_written() {
     let material = harness.state().document().materials[0].clone();
     let path = folder.path().join("out.mtlx");
     ask_for(&mut harness, &path);
+    see_label(&mut harness, "Export format");
     see_label(&mut harness, "Write the file");
     harness.check_accessibility();
     assert!(!path.exists(), "it was written before anybody agreed");

@@ -80,8 +80,10 @@ fn each_save_is_reported_over_the_viewport() {
     close(&mut harness);
     request(&mut harness, Action::ChangeLibrary(Change::Add));
     see(&mut harness, "the preset", |harness| {
-        has(harness, ".json: one of your presets")
+        has(harness, ".json: one of your presets") && harness.has("New name")
     });
+    harness.key_press(egui::Key::Escape);
+    harness.run_steps(2);
     close(&mut harness);
     harness.command(Command::Export);
     type_path(&mut harness, &path("out.mtlx"), "Save");

@@ -180,6 +180,25 @@ fn the_palette_leads_to_parameters_and_panels() {
     harness.key_press(Key::Enter);
     settle(&mut harness);
     assert_eq!(harness.document().materials[0].roughness, 0.9);
+    // Digits after Enter are not those of the view.
+    let camera = harness.document().camera;
+    harness.key_press(Key::Num5);
+    harness.run_steps(2);
+    assert_eq!(harness.document().camera, camera);
+    // What does not apply is found, and leads to what makes it apply.
+    harness.command(Command::Palette);
+    harness.event(egui::Event::Text("coat rough".to_owned()));
+    harness.run_steps(2);
+    harness.key_press(Key::Enter);
+    harness.run_steps(4);
+    let node = harness.get_by_label("Coat weight");
+    assert!(node.accesskit_node().is_focused());
+    harness.event(egui::Event::Text("1".to_owned()));
+    harness.run_steps(2);
+    harness.key_press(Key::Enter);
+    settle(&mut harness);
+    assert!(harness.has("Coat on the base") && harness.has("Coat darkening"));
+    undo(&mut harness);
     for (words, key, value) in [
         ("specular lobe", Key::ArrowDown, Lobe::ALL[1]),
         ("specular lobe", Key::ArrowUp, Lobe::ALL[0]),

@@ -20,6 +20,8 @@ fn camera(harness: &Editor) -> CameraSettings {
 fn keys_look_from_the_sides_in_parallel_rays() {
     let mut harness = editor();
     let (before, shown) = (harness.document().clone(), picture(&harness));
+    harness.hover_at(harness.get_by_label("Viewport").rect().center());
+    harness.run_steps(2);
     for (key, yaw_deg, pitch_deg) in [(Key::Num1, 0.0, 0.0), (Key::Num3, 90.0, 0.0), (Key::Num7, 0.0, 90.0)] {
         harness.key_press(key);
         settle(&mut harness);
@@ -71,7 +73,7 @@ fn a_light_is_hidden_from_the_camera_by_its_row() {
     let mut harness = lit();
     let (before, shown) = (harness.document().clone(), picture(&harness));
     harness
-        .get_by_role_and_label(Role::CheckBox, "Area light 1 hidden")
+        .get_by_role_and_label(Role::CheckBox, "Area light 1 hidden from camera")
         .click_accesskit();
     settle(&mut harness);
     assert!(harness.document().lighting.area_lights[0].is_hidden);

@@ -66,14 +66,12 @@ fn a_check_can_be_stopped_and_leaves_the_viewport_its_time() {
     see_label(&mut harness, "Check this machine");
 }
 
-/// Help › Benchmark opens its section; a quick run shows a table of the engines and hands on its result.
+/// The benchmark's section of *Check*: a quick run shows a table of the engines and hands on its result.
 #[test]
 #[cfg_attr(not(feature = "thorough"), ignore = "thorough")]
-fn the_benchmark_is_run_from_the_help_menu() {
+fn the_benchmark_is_run_in_its_section() {
     let mut harness = editor();
-    harness.tap_label("Help");
-    harness.get_by_label("Benchmark").click_accesskit();
-    harness.run_steps(5);
+    harness.reveal(Pane::Check);
     harness.tap(Role::CheckBox, "Quick");
     harness.get_by_label("Run the benchmark").click_accesskit();
     see(&mut harness, "the result", |harness| harness.has("Copy the result"));

@@ -22,8 +22,7 @@ use crate::app::sheets::{
 };
 use crate::app::workspaces::Change;
 use crate::app::{App, is_dragging};
-use crate::document::{CameraSettings, Denoise, Document, History, MaterialSettings, parameter, setting};
-use crate::render::EngineChoice;
+use crate::document::{CameraSettings, Denoise, Document, History, MaterialSettings, PARAMETERS, parameter, setting};
 use crate::scene::{
     ModelOptions,
     camera::{Projection, framing_distance},
@@ -96,14 +95,6 @@ impl App {
                 (self.shared.rendering.engine, self.shared.rendering.kept_engine) = (choice, choice);
                 self.worker.use_engine(choice);
             }
-            Action::UseRayQueries(choice) => {
-                choice.choose();
-                self.shared.rendering.kept_ray_queries = choice;
-                // Engines find out when they are opened.
-                if self.shared.rendering.engine != EngineChoice::Cpu {
-                    self.worker.use_engine(self.shared.rendering.engine);
-                }
-            }
             Action::Show(shown) => {
                 self.shared.viewing.shown = shown;
                 self.worker.show(shown);
@@ -131,7 +122,11 @@ impl App {
     /// Lays the account of a path of the image in progress over the window.
     fn explain(&mut self, pixel: [u32; 2], sample: u32) {
         if let Some(scene) = self.scene() {
-            let account = explain(&scene.document, &scene.model, &scene.job, pixel, sample);
+            // In full size, also while a smaller image is shown.
+            let (render, mut job) = (&scene.document.render, (*scene.job).clone());
+            let shown = std::mem::replace(&mut job.settings.image_size, [render.width, render.height]);
+            let full = |i: usize| (pixel[i] * job.settings.image_size[i] + shown[i] / 2) / shown[i].max(1);
+            let account = explain(&scene.document, &scene.model, &job, [full(0), full(1)], sample);
             self.sheet = Sheet::Path {
                 text: account.to_string(),
             };
@@ -142,7 +137,12 @@ impl App {
     fn edit_parameter(&mut self, ctx: &egui::Context, key: &str) {
         if let Ok(parameter) = parameter(key) {
             self.reveal(Pane::Material);
-            keys::focus_row(ctx, parameter.group, parameter.full_name());
+            // A row that does not apply comes with the first of its group that does, such as the weight.
+            let material = self.desk_material();
+            let of_group = PARAMETERS.iter().filter(|of| of.group == parameter.group);
+            let mut rows = std::iter::once(parameter).chain(of_group);
+            let row = rows.find(|row| (row.applies)(&material)).unwrap_or(parameter);
+            keys::focus_row(ctx, row.group, row.full_name());
         } else if let Some(setting) = setting(key) {
             let is_light = key.starts_with("lighting.") || key == "scene.ground";
             self.reveal(if is_light { Pane::Lighting } else { Pane::Camera });
@@ -261,7 +261,6 @@ impl App {
                     Pane::Effects
                 });
             }
-            Command::Benchmark => self.reveal(Pane::Check),
             Command::Turntable => self.open_turntable(),
             Command::PreviewTurn => {
                 let (since, camera) = (Instant::now(), self.document.camera);
@@ -284,9 +283,6 @@ impl App {
             Command::SaveToMyPresets => self.change_library(library::Change::Add),
             Command::New => self.unless_unsaved(ctx, Then::New),
             Command::Open => self.ask(ctx, Purpose::Open),
-            Command::OpenModel => self.ask(ctx, Purpose::OpenModel),
-            Command::OpenEnvironment => self.ask(ctx, Purpose::OpenEnvironment),
-            Command::OpenMaterial => self.ask(ctx, Purpose::OpenMaterial),
             Command::OpenMeasured => self.ask(ctx, Purpose::OpenMeasured),
             Command::WatchFolder => self.ask(ctx, Purpose::WatchFolder),
             Command::TypePaths => self.toggle_typed_paths(),

@@ -8,12 +8,17 @@ use crate::app::App;
 use crate::app::handlers::files::finish;
 use crate::app::layout::Pane;
 use crate::app::services::{disk::Task, library::Change, messages::Entry, pictures::uploaded};
+use crate::document::Document;
 use crate::render::display::display;
+use crate::render::worker::{Activity, Picture};
 use crate::store::{
     FileError,
     library::{self, Removed},
     snapshots,
 };
+
+/// Samples per pixel from which an image is clean at the size of a snapshot's.
+const PINNED_FROM: u32 = 8;
 
 /// What was done, and what was removed.
 type Done = (Option<Entry>, Option<Removed>);
@@ -93,14 +98,18 @@ impl App {
         if change == Change::Add && picture.is_none() {
             return self.warn("there is no image to pin yet");
         }
+        let is_early = change == Change::Add && !self.has_whole_picture();
         let (document, before) = (self.document.clone(), self.shared.snapshots.removed.take());
         self.files.disk.order(task(&change), move || {
             let done = match (&change, picture) {
-                (Change::Add, Some(picture)) => {
+                (Change::Add | Change::Retake(_), Some(picture)) => {
                     let rgba = display(&picture.image, &picture.document.view);
                     let pixels = RgbaImage::from_raw(picture.width, picture.height, rgba).unwrap_or_default();
-                    let added = snapshots::add(&folder, &document, &pixels);
-                    added.map(|path| (Some(Entry::done_with("Pinned", &path, "")), None))
+                    match &change {
+                        Change::Retake(path) => snapshots::save(path, &document, &pixels).map(|()| (None, before)),
+                        _ => snapshots::add(&folder, &document, &pixels)
+                            .map(|path| (Some(Entry::done_with("Pinned", &path, "")), None)),
+                    }
                 }
                 (change, _) => carry_out(change, before, snapshots::rename),
             };
@@ -111,9 +120,13 @@ impl App {
                 };
                 app.report_all(errors);
                 app.shared.snapshots.removed = removed;
+                let added = done.as_ref().and_then(|done| done.file.clone());
+                if let Some(path) = added.filter(|_| is_early) {
+                    app.shared.snapshots.unfinished = Some((path, document));
+                }
                 let known = std::mem::take(&mut app.shared.snapshots.entries);
                 for pinned in pinned {
-                    let texture = match known.iter().find(|(known, _)| known.path == pinned.path) {
+                    let texture = match known.iter().find(|(known, _)| *known == pinned) {
                         Some((_, texture)) => texture.clone(),
                         None => uploaded(ctx, &pinned.picture),
                     };
@@ -123,6 +136,25 @@ impl App {
                 true
             })
         });
+    }
+
+    fn has_whole_picture(&self) -> bool {
+        let snapshot = self.worker.snapshot();
+        let is_clean =
+            |picture: &Picture| picture.samples_per_pixel >= PINNED_FROM || snapshot.activity == Activity::Done;
+        let picture = snapshot.picture.as_deref();
+        picture.is_some_and(|picture| self.is_whole(picture) && is_clean(picture))
+    }
+
+    /// Takes the image of what was pinned too early, once it is whole; none where the document is another by then.
+    pub fn retake_snapshot(&mut self) {
+        let (is_whole, document) = (self.has_whole_picture(), &self.document);
+        let is_over = |(_, pinned): &mut (PathBuf, Document)| is_whole || pinned != document;
+        if let Some((path, pinned)) = self.shared.snapshots.unfinished.take_if(is_over)
+            && pinned == self.document
+        {
+            self.change_snapshots(Change::Retake(path));
+        }
     }
 
     /// Brings a pinned state back: an edit like others.

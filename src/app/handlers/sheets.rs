@@ -229,13 +229,13 @@ impl App {
         if !self.turntable.is_open {
             return;
         }
-        let speed = self.worker.snapshot().samples_per_second;
+        let snapshot = self.worker.snapshot();
         let sheet = &mut self.turntable;
         let modal = egui::Modal::new(egui::Id::unique("turntable")).show(ctx, |ui| {
             ui.set_width(440.0);
             book::heading(ui, "Turntable", TURNTABLE);
             ui.add_space(theme::GAP);
-            sheet.settings(ui, speed)
+            sheet.settings(ui, &snapshot.progress)
         });
         sheet.is_open = !modal.should_close() && !modal.inner;
         if modal.inner {

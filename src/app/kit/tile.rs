@@ -1,12 +1,15 @@
 //! An image with a name, to choose: as a tile of a grid, or as a row of a list; with a button for what else can be done.
 
-use egui::text::{LayoutJob, TextWrapping};
+use egui::text::LayoutJob;
 use egui::*;
 
 use super::theme;
 
 /// Side of the button in a tile's corner, points.
 const BUTTON: f32 = 18.0;
+
+/// Lines of a name below an image.
+const LINES: usize = 2;
 
 /// How things are laid out.
 #[derive(Clone, Copy)]
@@ -108,10 +111,12 @@ impl Tile<'_> {
         Image::new(picture).uv(middle).corner_radius(3.0).paint_at(ui, place);
     }
 
-    /// The name in one line, as far as it goes.
-    fn text(&self, ui: &Ui, style: TextStyle, width: f32, color: Color32) -> std::sync::Arc<Galley> {
-        let mut job = LayoutJob::simple_singleline(self.name.to_owned(), style.resolve(ui.style()), color);
-        job.wrap = TextWrapping::truncate_at_width(width.max(1.0));
+    /// The name in so many lines, as far as it goes.
+    fn text(&self, ui: &Ui, style: TextStyle, width: f32, max_rows: usize) -> std::sync::Arc<Galley> {
+        let (font, color) = (style.resolve(ui.style()), Color32::PLACEHOLDER);
+        let mut job = LayoutJob::simple(self.name.to_owned(), font, color, width.max(1.0));
+        job.wrap.max_rows = max_rows;
+        job.wrap.break_anywhere = max_rows == 1;
         ui.painter().layout_job(job)
     }
 
@@ -127,7 +132,7 @@ impl Tile<'_> {
         let place = Rect::from_min_size(rect.left_top() + vec2(4.0, 2.0), self.size);
         self.paint(ui, place);
         let left = place.right() + 10.0;
-        let text = self.text(ui, TextStyle::Body, rect.right() - left - 4.0, visuals.text_color());
+        let text = self.text(ui, TextStyle::Body, rect.right() - left - 4.0, 1);
         let at = pos2(left, rect.center().y - 0.5 * text.size().y);
         ui.painter().galley(at, text, visuals.text_color());
         response
@@ -136,7 +141,7 @@ impl Tile<'_> {
     /// The image with the name below it, and in its corner a button, which is seen while it is pointed at or has the keys.
     pub fn cell(&self, ui: &mut Ui, menu_name: &str, menu: impl FnMut(&mut Ui)) -> Response {
         let line = ui.text_style_height(&TextStyle::Small);
-        let response = self.place(ui, self.size + vec2(0.0, line + 4.0));
+        let response = self.place(ui, self.size + vec2(0.0, LINES as f32 * line + 4.0));
         let place = Rect::from_min_size(response.rect.left_top(), self.size);
         self.paint(ui, place);
         let is_lit = response.hovered() || response.has_focus() || response.contains_pointer();
@@ -147,7 +152,7 @@ impl Tile<'_> {
         };
         ui.painter().rect_stroke(place, 4.0, frame, StrokeKind::Inside);
         let color = ui.visuals().text_color();
-        let text = self.text(ui, TextStyle::Small, self.size.x, color);
+        let text = self.text(ui, TextStyle::Small, self.size.x, LINES);
         let at = pos2(place.center().x - 0.5 * text.size().x, place.bottom() + 2.0);
         ui.painter().galley(at, text, color);
         let corner = Rect::from_min_size(place.right_top() - vec2(BUTTON + 2.0, -2.0), Vec2::splat(BUTTON));

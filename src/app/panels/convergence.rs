@@ -43,23 +43,14 @@ fn unknown(render: &RenderSettings) -> String {
 }
 
 fn words(ui: &mut Ui, last: &Measurement, progress: &Progress) {
-    let noise = &last.noise;
     ui.label(format!(
         "Error {} after {} and {:.0} samples per pixel",
-        with_band(noise),
+        with_band(&last.noise),
         duration(last.engine_seconds),
         last.samples_per_pixel,
     ));
     if let Some(text) = forecast(last, progress.noise_wanted) {
         ui.strong(text);
-    }
-    if noise.relative > 0.0 {
-        let share = noise.from_spread / noise.relative;
-        ui.weak(format!(
-            "Assuming independent samples: {} ({share:.2} ×)",
-            percent(noise.from_spread)
-        ))
-        .on_hover_text("Equal for uniform random numbers; Sobol's error should be lower than this.");
     }
 }
 

@@ -134,11 +134,14 @@ fn outcome(ui: &mut Ui, desk: &mut Desk, state: &mut RacePanel, race: &Arc<Race>
     widgets::note(
         ui,
         format!(
-            "Left: faster, to a noise of {}. Low: less bias against the most accurate image; on the lowest line none \
-             could be measured. Click a point to use its settings.",
+            "Left: faster, to a noise of {}. Low: less bias against the most accurate image; hollow, with a line down: at \
+             most so much. Click a point to use its settings.",
             percent(race.noise)
         ),
     );
+    if race.runners.iter().any(Runner::is_limit) {
+        widgets::note(ui, "Too short to tell all biases: raise the time per technique.");
+    }
     let taken = table(ui, race, is_stale).or(charted);
     if let Some(index) = taken.filter(|_| !is_stale) {
         // Undo takes the settings back.
@@ -172,7 +175,12 @@ fn chart(ui: &mut Ui, race: &Race) -> Option<usize> {
         for (runner, place) in std::iter::zip(&race.runners, &places) {
             let color = if runner.is_on_front { accent } else { weak };
             let name = &runner.label;
-            plot_ui.points(Points::new(name, *place).color(color).radius(4.0));
+            let points = Points::new(name, *place).color(color).radius(4.0);
+            plot_ui.points(points.filled(!runner.is_limit()));
+            if runner.is_limit() {
+                let down = vec![*place, [place[0], least.log10()]];
+                plot_ui.line(line("at most", down, color, 1.0));
+            }
             if runner.is_on_front {
                 let at = PlotPoint::new(place[0], place[1]);
                 let text = Text::new(name, at, format!(" {name}")).color(color);
@@ -237,10 +245,10 @@ fn table(ui: &mut Ui, race: &Race, is_stale: bool) -> Option<usize> {
 fn bias(runner: &Runner) -> String {
     if runner.is_unbiased {
         "none".to_owned()
-    } else if runner.bias.is_resolved() {
-        percent(runner.bias.value)
-    } else {
+    } else if runner.is_limit() {
         format!("< {}", percent(runner.bias.high))
+    } else {
+        percent(runner.bias.value)
     }
 }
 

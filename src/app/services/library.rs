@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use egui::TextureHandle;
 
+use crate::document::Document;
 use crate::store::{
     library::{Entry, Removed},
     snapshots::Pinned,
@@ -24,6 +25,8 @@ pub enum Change {
     Remove(PathBuf),
     /// What was removed last comes back.
     Restore,
+    /// The image of a pinned state is replaced by the latest.
+    Retake(PathBuf),
 }
 
 /// A folder and what it holds.
@@ -35,6 +38,8 @@ pub struct Folder<T> {
     pub removed: Option<Removed>,
     /// The file that is being given another name, and what was typed so far.
     pub renaming: Option<(PathBuf, String)>,
+    /// What was pinned before its image was whole.
+    pub unfinished: Option<(PathBuf, Document)>,
 }
 
 impl<T> Folder<T> {
@@ -44,6 +49,7 @@ impl<T> Folder<T> {
             entries: Vec::new(),
             removed: None,
             renaming: None,
+            unfinished: None,
         }
     }
 }

@@ -12,7 +12,7 @@ const LIMIT: usize = 500;
 /// What a note has a button for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Offer {
-    /// All that became of the model's file. The note stays until it is closed.
+    /// All that became of the model's file. A warning stays until it is closed.
     ImportReport,
     /// Rendering to the end what was saved unfinished.
     Render,
@@ -111,12 +111,10 @@ pub fn add_import(log: &mut Vec<Entry>, name: &str, report: &ImportReport) {
         [first, rest @ ..] => format!(", in {first} and {} more", rest.len()),
     };
     let text = format!("{name}: {}{parts} – {meaning}.{more}", worst.what);
+    let told = match worst.fate {
+        Fate::Used | Fate::Approximated => Entry::done(text),
+        _ => Entry::new(Level::Warning, text),
+    };
     let offer = Some(Offer::ImportReport);
-    add(
-        log,
-        Entry {
-            offer,
-            ..Entry::new(Level::Warning, text)
-        },
-    );
+    add(log, Entry { offer, ..told });
 }

@@ -1,7 +1,7 @@
 //! What renders the viewport, how it shows that, and what a click in it is for.
 
 use crate::named::named;
-use crate::render::{EngineChoice, RayQueries, shown::Shown};
+use crate::render::{EngineChoice, shown::Shown};
 
 /// How the viewport shows the render.
 #[derive(Clone, Debug, Default)]
@@ -31,8 +31,8 @@ named! {
     Resolution {
         #[default]
         Auto, "Auto", "Fill", "Fills the viewport: with the screen's pixels on a GPU, with fewer on the CPU.";
-        Native, "Native", "Fill, native", "Fills the viewport with the screen's own pixels.";
-        Half, "Half", "Fill, half", "Fills the viewport with half as many pixels each way.";
+        Native, "Native", "Fill, full resolution", "Fills the viewport with the screen's own pixels.";
+        Half, "Half", "Fill, half resolution", "Fills the viewport with half as many pixels each way.";
         Document, "Document", "Image size", "Width and height as set below, for any shape of the viewport.";
     }
 }
@@ -42,8 +42,6 @@ pub struct Rendering {
     /// The engine that was asked for, and the one that is remembered: the command line's is not.
     pub engine: EngineChoice,
     pub kept_engine: EngineChoice,
-    /// Whether the GPU's engine uses ray queries, as it is remembered.
-    pub kept_ray_queries: RayQueries,
     /// Rendering was stopped by hand.
     pub is_paused: bool,
     /// A study measures, for which it rests.

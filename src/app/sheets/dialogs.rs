@@ -11,7 +11,7 @@ use crate::app::sheets::question;
 use crate::render::output::FORMATS;
 use crate::scene::texture::TextureTarget;
 use crate::store::exchange;
-use crate::store::file_kind::{FileKind, MATERIAL_KINDS, OPENED, PICTURE_KINDS, endings};
+use crate::store::file_kind::{FileKind, OPENED, PICTURE_KINDS, endings};
 
 /// A dialog that returns empty-handed sooner than this never opened: no user cancels that fast.
 const NO_DIALOG: Duration = Duration::from_millis(400);
@@ -25,9 +25,6 @@ const FOLDERS: usize = 6;
 pub enum Purpose {
     Open,
     SaveProject,
-    OpenModel,
-    OpenEnvironment,
-    OpenMaterial,
     OpenMeasured,
     SaveMaterial,
     Export,
@@ -55,9 +52,6 @@ impl Purpose {
         match self {
             Self::Open => ("Open", false, ("Projects, materials, models, environments, images with a document", endings(OPENED))),
             Self::SaveProject => ("Save the project", true, ("Projects", vec!["json"])),
-            Self::OpenModel => ("Open a model", false, ("Models", FileKind::Model.endings())),
-            Self::OpenEnvironment => ("Open an environment", false, ("Environment maps", endings(PICTURE_KINDS))),
-            Self::OpenMaterial => ("Open a material", false, ("Materials", endings(MATERIAL_KINDS))),
             Self::OpenMeasured => ("Open a measured material", false, of_kind(FileKind::Measured)),
             Self::SaveMaterial => ("Save the material", true, ("Materials", vec!["json"])),
             Self::Export => ("Export for another program", true, ("Files of other programs", exchange::endings_written())),

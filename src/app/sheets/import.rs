@@ -106,25 +106,14 @@ fn entries(ui: &mut Ui, report: &ImportReport) {
                 continue;
             }
             ui.add_space(4.0);
-            ui.label(RichText::new(capital(fate.label())).strong());
-            Grid::new(fate.label()).spacing([12.0, 3.0]).show(ui, |ui| {
-                for entry in entries {
-                    ui.label(format!("{} ×", entry.count));
-                    let mut text = entry.what.clone();
-                    if !entry.names.is_empty() {
-                        text += &format!(": {}", entry.names.join(", "));
-                    }
-                    ui.add(Label::new(text).wrap());
-                    ui.end_row();
+            ui.label(RichText::new(fate.label()).strong());
+            for entry in entries {
+                let mut text = format!("{}: {}", entry.what, entry.count);
+                if !entry.names.is_empty() {
+                    text += &format!(" ({})", entry.names.join(", "));
                 }
-            });
+                ui.add(Label::new(text).wrap());
+            }
         }
     });
-}
-
-/// With a capital first letter.
-fn capital(text: &str) -> String {
-    let mut letters = text.chars();
-    let first = letters.next().into_iter().flat_map(char::to_uppercase);
-    first.chain(letters).collect()
 }

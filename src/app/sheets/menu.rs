@@ -8,8 +8,7 @@ use crate::app::services::recent::Recent;
 use crate::app::sheets::palette::{self, Findable};
 use crate::app::sheets::{import, scrolled, workspaces};
 use crate::document::{ImportLobe, MaterialSettings};
-use crate::named::Named;
-use crate::render::{EngineChoice, RayQueries};
+use crate::render::EngineChoice;
 use crate::scene::Model;
 use crate::store::examples::EXAMPLES;
 
@@ -42,7 +41,7 @@ pub fn bar(
     actions: &mut Vec<Action>,
 ) {
     MenuBar::new().ui(ui, |ui| {
-        for menu in Menu::ALL {
+        for &menu in Menu::ALL {
             ui.menu_button(menu.label(), |ui| {
                 ui.set_min_width(200.0);
                 let mut group = 0;
@@ -58,10 +57,7 @@ pub fn bar(
                 }
                 match menu {
                     Menu::View => panes(ui, &is_open, actions),
-                    Menu::Render => {
-                        radios(ui, "Engine", engine, actions, Action::UseEngine);
-                        radios(ui, "Ray queries", RayQueries::chosen(), actions, Action::UseRayQueries);
-                    }
+                    Menu::Render => engines(ui, engine, actions),
                     Menu::File => import_lobes(ui, import_lobe, actions),
                     Menu::Help => examples(ui, actions),
                     _ => {}
@@ -134,13 +130,13 @@ fn panes(ui: &mut Ui, is_open: impl Fn(Pane) -> bool, actions: &mut Vec<Action>)
     }
 }
 
-/// A list of choices, with a tick at the one that is made.
-fn radios<T: Named>(ui: &mut Ui, of: &str, chosen: T, actions: &mut Vec<Action>, action: fn(T) -> Action) {
+/// The engines, with a tick at the one that is chosen.
+fn engines(ui: &mut Ui, chosen: EngineChoice, actions: &mut Vec<Action>) {
     ui.separator();
-    for &choice in T::ALL {
-        let radio = ui.radio(choice == chosen, format!("{of}: {}", choice.label()));
+    for &choice in EngineChoice::ALL {
+        let radio = ui.radio(choice == chosen, format!("Engine: {}", choice.label()));
         if radio.on_hover_text(choice.help()).clicked() {
-            do_and_close(ui, actions, action(choice));
+            do_and_close(ui, actions, Action::UseEngine(choice));
         }
     }
 }

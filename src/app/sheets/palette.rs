@@ -4,7 +4,7 @@ use super::*;
 use crate::app::actions::Command;
 use crate::app::kit::parameter_row;
 use crate::app::pane::Pane;
-use crate::document::{Kind, MaterialSettings, PARAMETERS, Parameter, SETTINGS};
+use crate::document::{MaterialSettings, PARAMETERS, Parameter, SETTINGS};
 
 /// Something to be found.
 #[derive(Clone, PartialEq)]
@@ -35,6 +35,9 @@ impl Findable {
 pub fn focus(ctx: &Context) {
     ctx.memory_mut(|memory| memory.request_focus(field_id()));
 }
+
+/// Height of the rows that are seen, ten of them at least, points.
+const ROWS: f32 = 360.0;
 
 fn field_id() -> Id {
     Id::unique("palette field")
@@ -69,7 +72,8 @@ pub fn show(
         .min(last)
         .saturating_sub(usize::from(up));
     let mut chosen = is_entered.then_some(*selected);
-    ScrollArea::vertical().max_height(360.0).show(ui, |ui| {
+    let rows = ScrollArea::vertical().max_height(ROWS).min_scrolled_height(ROWS);
+    rows.show(ui, |ui| {
         ui.set_min_width(ui.available_width());
         for (index, entry) in found.iter().enumerate() {
             let button = Button::selectable(index == *selected, &entry.label).shortcut_text(&entry.keys);
@@ -100,11 +104,13 @@ pub fn keys(ui: &Ui, command: Command) -> String {
     keys.unwrap_or_default()
 }
 
-/// A parameter that has a row.
-fn of_parameter<T>(parameter: &Parameter<T>) -> Option<Findable> {
-    parameter_row::has_row(parameter).then(|| Findable {
+/// A parameter that has a row, with its value. A texture's switch stands beside its image.
+fn of_parameter<T>(parameter: &Parameter<T>, of: &T) -> Option<Findable> {
+    let has_row = parameter_row::has_row(parameter) && !parameter.key.ends_with("_texture");
+    has_row.then(|| Findable {
         tags: parameter.key.to_owned(),
         help: parameter.help,
+        keys: parameter.text(&parameter.get(of)),
         ..Findable::new(parameter.full_name(), Action::Edit(parameter.key))
     })
 }
@@ -127,10 +133,6 @@ fn found(
         keys: keys(ui, *command),
         ..Findable::new(command.label().to_owned(), Action::Do(*command))
     });
-    // A texture's switch stands beside its image.
-    let parameters = PARAMETERS.iter();
-    let parameters = parameters.filter(|of| !matches!(of.kind, Kind::Toggle) && (of.applies)(edited));
-    let settings = SETTINGS.iter().filter(|setting| (setting.applies)(document));
     let panes = Pane::ALL.into_iter().filter(|pane| *pane != Pane::Viewport);
     let panes = panes.map(|pane| Findable::new(pane.command(), Action::Reveal(pane)));
     let has_words = |text: &str| {
@@ -138,8 +140,12 @@ fn found(
         words.iter().all(|word| text.contains(word))
     };
     let mut found: Vec<Findable> = commands.collect();
-    found.extend(parameters.filter_map(of_parameter));
-    found.extend(settings.filter_map(of_parameter));
+    found.extend(
+        PARAMETERS
+            .iter()
+            .filter_map(|parameter| of_parameter(parameter, edited)),
+    );
+    found.extend(SETTINGS.iter().filter_map(|setting| of_parameter(setting, document)));
     found.extend(panes.chain(things.iter().cloned()));
     found.retain(|entry| has_words(&format!("{} {}", entry.label, entry.tags)));
     found.sort_by_key(|entry| (!has_words(&entry.label), !entry.is_favourite));

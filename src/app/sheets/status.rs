@@ -1,101 +1,17 @@
 //! The bar at the bottom: whether the image is clean or how long that takes; in *Measure* also what renders, how exact
-//! it is, and how long the window's frames take. Elsewhere these are shown under the pointer.
+//! it is. Elsewhere these are shown under the pointer.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use super::*;
 use crate::app::kit::words::{error, percent, short_number, time_left};
-use crate::render::Progress;
 use crate::render::worker::{Activity, Snapshot};
+use crate::render::{Progress, beyond_bounces};
 
 /// How often the loading message is refreshed.
 const LOADING_REPAINT: Duration = Duration::from_millis(200);
-/// How long a frame counts as recent.
-const RECENT: Duration = Duration::from_secs(10);
-/// An image that has ended below this estimated error is called clean.
+/// An image below this estimated error is called clean.
 const CLEAN: f64 = 0.05;
-/// Frames left out of the worst: at the start, fonts and pipelines are made.
-const WARM_UP_FRAMES: u64 = 10;
-
-/// How long the window's frames take. Two times, as they have different causes: the *work* of a frame, for which nothing
-/// else happens in the window (panels, tessellation, upload, submission: what eframe counts), and the *interval* between
-/// frames that follow each other without a pause, which also holds the driver's drawing and the wait for the screen.
-#[derive(Default)]
-pub struct FrameMeter {
-    frames: u64,
-    begun: Option<Instant>,
-    work: Track,
-    interval: Track,
-}
-
-/// One of the two times.
-#[derive(Default)]
-struct Track {
-    last: Duration,
-    worst: Duration,
-    recent: Vec<(Instant, Duration)>,
-}
-
-impl Track {
-    fn record(&mut self, now: Instant, duration: Duration, is_warm: bool) {
-        self.last = duration;
-        self.recent.retain(|(at, _)| now.duration_since(*at) < RECENT);
-        self.recent.push((now, duration));
-        if is_warm {
-            self.worst = self.worst.max(duration);
-        }
-    }
-}
-
-impl FrameMeter {
-    /// A frame begins. `is_running`: it was asked for while the last one was drawn. `work_seconds`: eframe's count of
-    /// the last one.
-    pub fn begin(&mut self, now: Instant, is_running: bool, work_seconds: Option<f32>) {
-        let is_warm = self.frames > WARM_UP_FRAMES;
-        if let Some(seconds) = work_seconds {
-            let work = Duration::from_secs_f32(seconds.clamp(0.0, 1e3));
-            self.work.record(now, work, is_warm);
-        }
-        if let Some(begun) = self.begun.filter(|_| is_running) {
-            self.interval.record(now, now.duration_since(begun), is_warm);
-        }
-        self.begun = Some(now);
-        self.frames += 1;
-    }
-
-    /// One line for the log.
-    pub fn summary(&self) -> String {
-        format!(
-            "window: {} frames; longest frame {:.1} ms, longest interval between frames {:.1} ms",
-            self.frames,
-            ms(self.work.worst),
-            ms(self.interval.worst)
-        )
-    }
-
-    fn describe(&self, ui: &mut Ui) {
-        ui.label("The window's own frames: they are drawn beside the renderer.");
-        Grid::new("frame times").show(ui, |ui| {
-            for heading in ["", "last", "longest in 10 s", "longest"] {
-                ui.weak(heading);
-            }
-            ui.end_row();
-            for (label, track) in [("Frame", &self.work), ("From frame to frame", &self.interval)] {
-                ui.label(label);
-                let recent = track.recent.iter().map(|(_, duration)| *duration).max();
-                for duration in [track.last, recent.unwrap_or_default(), track.worst] {
-                    ui.label(format!("{:.1} ms", ms(duration)));
-                }
-                ui.end_row();
-            }
-        });
-        ui.weak("From frame to frame: while something moves; with the driver's drawing and the wait for the screen.");
-    }
-}
-
-fn ms(duration: Duration) -> f64 {
-    1e3 * duration.as_secs_f64()
-}
 
 /// What the bar keeps longest where it is narrow, first.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -109,8 +25,6 @@ enum Rank {
     Time,
     Size,
     Rate,
-    Adapter,
-    Window,
 }
 
 /// Space between two parts, points.
@@ -165,7 +79,7 @@ fn lines(ui: &mut Ui, lines: Vec<String>) {
 }
 
 /// Shows the bar's contents, what there is room for. `has_numbers`: error, samples and times stand in it, too.
-pub fn show(ui: &mut Ui, snapshot: &Snapshot, meter: &FrameMeter, has_numbers: bool, actions: &mut Vec<Action>) {
+pub fn show(ui: &mut Ui, snapshot: &Snapshot, has_numbers: bool, actions: &mut Vec<Action>) {
     ui.horizontal_centered(|ui| {
         ui.spacing_mut().item_spacing.x = SPACING;
         let mut parts = Parts { ui, parts: Vec::new() };
@@ -185,24 +99,11 @@ pub fn show(ui: &mut Ui, snapshot: &Snapshot, meter: &FrameMeter, has_numbers: b
             }
             parts.explained(Rank::Size, size, vec!["Size of the image shown".to_owned()]);
         }
-        if has_numbers {
-            let text = format!("window {:.0} ms", ms(meter.work.last));
-            parts.text(Rank::Window, RichText::new(text).weak(), |ui| {
-                meter.describe(ui);
-                if let Some(first) = snapshot.first_picture {
-                    ui.label(format!("From the last change to its first image: {:.0} ms", ms(first)));
-                }
-            });
-        }
         let parts = parts.parts;
         let widths = parts.iter().map(|(rank, width, _)| (*rank, *width)).collect();
         let last = widgets::fitting(widths, ui.available_width() + SPACING);
-        for (rank, _, show) in parts.into_iter().filter(|(rank, ..)| Some(*rank) <= last) {
-            if rank == Rank::Window {
-                widgets::at_right(ui, show);
-            } else {
-                show(ui);
-            }
+        for (_, _, show) in parts.into_iter().filter(|(rank, ..)| Some(*rank) <= last) {
+            show(ui);
         }
     });
 }
@@ -219,8 +120,7 @@ fn engine(parts: &mut Parts<'_, '_>, snapshot: &Snapshot) {
     ];
     help.retain(|line| !line.is_empty());
     let kind = RichText::new(engine.kind.label()).strong();
-    parts.explained(Rank::Engine, kind, help.clone());
-    parts.explained(Rank::Adapter, &engine.adapter, help);
+    parts.explained(Rank::Engine, kind, help);
 }
 
 fn activity<'a>(parts: &mut Parts<'_, 'a>, snapshot: &'a Snapshot, actions: &'a mut Vec<Action>) {
@@ -272,12 +172,12 @@ fn state(snapshot: &Snapshot) -> String {
     let progress = &snapshot.progress;
     let noise = progress.noise.map(|noise| noise.relative);
     let shown_error = snapshot.denoised.map(|denoised| denoised.value).or(noise);
-    match snapshot.activity {
-        Activity::Rendering => match time_left(share_done(snapshot), progress.render_seconds) {
+    match (&snapshot.activity, shown_error) {
+        (Activity::Rendering | Activity::Done, Some(shown)) if shown <= CLEAN => "clean".to_owned(),
+        (Activity::Rendering, _) => match time_left(share_done(snapshot), progress.render_seconds) {
             Some(left) => format!("refining, {left}"),
             None => "refining".to_owned(),
         },
-        Activity::Done if shown_error.is_some_and(|error| error <= CLEAN) => "clean".to_owned(),
         _ => snapshot.activity.to_string(),
     }
 }
@@ -292,7 +192,7 @@ fn account(ui: &mut Ui, snapshot: &Snapshot) {
     if progress.samples_wanted > 0 {
         text.push(samples(progress));
         if let Some(noise) = progress.noise {
-            text.push(format!("Estimated error {}", error(noise.relative)));
+            text.push(format!("Estimated error {}", raw_error(snapshot, noise.relative)));
             text.push(band(noise.low, noise.high));
         }
         if let Some(denoised) = &snapshot.denoised {
@@ -300,7 +200,6 @@ fn account(ui: &mut Ui, snapshot: &Snapshot) {
             text.push(band(denoised.low, denoised.high));
         }
         text.push(format!("{:.1} s of rendering", progress.render_seconds));
-        text.push("More in the panel Convergence and the workspace Measure.".to_owned());
     }
     lines(ui, text);
 }
@@ -314,7 +213,8 @@ fn progress(snapshot: &Snapshot) -> Vec<(Rank, String, Vec<String>)> {
     if let Some(noise) = progress.noise {
         let mut help = help("Estimated noise: RMS pixel error / mean luminance");
         help.push(band(noise.low, noise.high));
-        parts.push((Rank::Error, format!("error {}", error(noise.relative)), help));
+        let text = format!("error {}", raw_error(snapshot, noise.relative));
+        parts.push((Rank::Error, text, help));
     }
     if let Some(estimate) = snapshot.denoised {
         let mut help = help("Estimated error of the denoised image, bias included: RMS / mean luminance");
@@ -327,6 +227,12 @@ fn progress(snapshot: &Snapshot) -> Vec<(Rank, String, Vec<String>)> {
     let about_rate = help("Pixel samples per second, over this whole image");
     parts.push((Rank::Rate, rate, about_rate));
     parts
+}
+
+/// The error of the samples, and what the last bounce cuts off.
+fn raw_error(snapshot: &Snapshot, noise: f64) -> String {
+    let bounces = snapshot.scene.as_ref().map_or(0, |scene| scene.document.render.bounces);
+    error(noise) + &beyond_bounces(snapshot.progress.cut_share, bounces)
 }
 
 fn band(low: f64, high: f64) -> String {

@@ -5,14 +5,17 @@ use std::time::Instant;
 
 use super::*;
 use crate::app::kit::words::duration;
-use crate::document::CameraSettings;
 use crate::document::turntable::Turn;
+use crate::document::{CameraSettings, Denoise};
 use crate::named::named;
+use crate::render::Progress;
 use crate::render::turntable::{FPS, Turntable};
 use crate::store::video;
 
 /// Frames at first: four seconds.
 const FRAMES: u32 = 96;
+/// Error at which a frame ends at first.
+const NOISE: f64 = 0.03;
 /// Columns and rows at first, where the image's own size only follows from the window's.
 pub const SIZE: [u32; 2] = [1920, 1080];
 
@@ -54,6 +57,8 @@ pub struct TurntableSheet {
     form: Form,
     fps: f64,
     pub samples: u32,
+    /// The denoised error at which a frame ends, before it has its samples; 0: none.
+    noise: f64,
     pub size: [u32; 2],
     /// The folder or the file.
     pub output: String,
@@ -69,6 +74,7 @@ impl Default for TurntableSheet {
             form: Form::default(),
             fps: FPS,
             samples: 0,
+            noise: NOISE,
             size: [0; 2],
             output: String::new(),
         }
@@ -81,6 +87,9 @@ impl TurntableSheet {
         [document.render.width, document.render.height] = self.size;
         document.render.samples = self.samples;
         document.render.time_s = None;
+        if self.noise > 0.0 {
+            (document.render.noise, document.view.denoise) = (Some(self.noise), Denoise::Auto);
+        }
         let path = PathBuf::from(self.output.trim());
         let is_video = self.form != Form::Pictures;
         Turntable {
@@ -94,27 +103,38 @@ impl TurntableSheet {
         }
     }
 
-    /// How long all frames take at so many pixel samples a second.
-    fn seconds(&self, samples_per_second: f64) -> f64 {
+    /// How long all frames take at the speed of a render, and as noisy.
+    fn seconds(&self, progress: &Progress) -> f64 {
         let pixels = self.size.map(f64::from);
-        f64::from(self.frames) * f64::from(self.samples) * pixels[0] * pixels[1] / samples_per_second
+        let to_noise = progress.samples_to(self.noise).unwrap_or(f64::INFINITY);
+        let samples = to_noise.min(self.samples.into()).max(1.0);
+        f64::from(self.frames) * samples * pixels[0] * pixels[1] / progress.samples_per_second
     }
 
-    /// The settings; true to begin. `samples_per_second`: how fast pixels are sampled at present.
-    pub fn settings(&mut self, ui: &mut Ui, samples_per_second: f64) -> bool {
+    /// The settings; true to begin. `progress`: of the render at present.
+    pub fn settings(&mut self, ui: &mut Ui, progress: &Progress) -> bool {
         let help = "What turns, anticlockwise seen from above.";
         widgets::choice_row(ui, ["Turntable turn", "Turn", help], &mut self.turn);
         let [width, height] = &mut self.size;
         #[rustfmt::skip]
         let numbers = [
             (["Turntable frames", "Frames", "Images of a whole turn."], &mut self.frames, 9999.0),
-            (["Turntable samples", "Samples", "Samples per pixel of each."], &mut self.samples, 65536.0),
+            (["Turntable samples", "Samples", "Samples per pixel of each at most."], &mut self.samples, 65536.0),
             (["Turntable width", "Width", "Columns of each."], width, 8192.0),
             (["Turntable height", "Height", "Rows of each."], height, 8192.0),
         ];
         for (name, value, most) in numbers {
             widgets::row(ui, name, |ui| widgets::number(ui, value, &style(1.0..=most, 0)));
         }
+        let help = "Each is denoised, and ends at this estimated error. At 0 it gets all its samples.";
+        let name = ["Turntable noise limit", "Noise limit", help];
+        let percent = widgets::NumberStyle {
+            zero: Some("off"),
+            ..widgets::NumberStyle::plain(0.0..=100.0, " %", 0.05, 2)
+        };
+        widgets::value_row(ui, name, &mut self.noise, NOISE, |ui, noise| {
+            widgets::number_as(ui, noise, &percent, |share| 100.0 * share, |percent| 0.01 * percent)
+        });
         let name = ["Turntable form", "Written as", "What the frames are written as."];
         widgets::choice_row(ui, name, &mut self.form);
         let is_video = self.form != Form::Pictures;
@@ -135,8 +155,8 @@ impl TurntableSheet {
             ui.add(field.margin(vec2(6.0, 4.0)))
         });
         let mut message = format!("A turn of {}", duration(f64::from(self.frames) / self.fps));
-        if samples_per_second > 0.0 {
-            let seconds = self.seconds(samples_per_second);
+        if progress.samples_per_second > 0.0 {
+            let seconds = self.seconds(progress);
             message += &format!(", rendered in about {} at the present speed", duration(seconds));
         }
         widgets::note(ui, message + ".");

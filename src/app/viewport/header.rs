@@ -93,13 +93,7 @@ pub fn in_bar(ui: &mut Ui, name: &str, bar: Rect) -> Ui {
 }
 
 /// A list of what comes with the program, and the way to a file of one's own.
-fn list(
-    ui: &mut Ui,
-    desk: &mut Desk,
-    (name, current): (&str, String),
-    entries: &[(&str, &str, bool, Action)],
-    open: Command,
-) {
+fn list(ui: &mut Ui, desk: &mut Desk, (name, current): (&str, String), entries: &[(&str, &str, bool, Action)]) {
     let combo = ComboBox::from_id_salt(name).width(120.0).selected_text(current);
     let shown = combo.show_ui(ui, |ui| {
         for (label, help, is_current, action) in entries {
@@ -110,7 +104,7 @@ fn list(
         }
         ui.separator();
         if ui.selectable_label(false, "Open…").clicked() {
-            do_and_close(ui, desk.actions, Action::Do(open));
+            do_and_close(ui, desk.actions, Action::Do(Command::Open));
         }
     });
     shown.response.accessible_name(name).on_hover_text(name);
@@ -120,7 +114,7 @@ fn models(ui: &mut Ui, desk: &mut Desk) {
     let current = &desk.document.model;
     let name = ("Model", model_label(current));
     let entries = MODELS.map(|(label, source)| (label, "", source == *current, Action::UseModel(source)));
-    list(ui, desk, name, &entries, Command::OpenModel);
+    list(ui, desk, name, &entries);
 }
 
 fn environments(ui: &mut Ui, desk: &mut Desk) {
@@ -131,7 +125,7 @@ fn environments(ui: &mut Ui, desk: &mut Desk) {
         (built_in.label, built_in.help, *current == built_in.source, action)
     });
     let entries: Vec<_> = entries.collect();
-    list(ui, desk, name, &entries, Command::OpenEnvironment);
+    list(ui, desk, name, &entries);
 }
 
 fn show_item(ui: &mut Ui, desk: &mut Desk, item: Item) {

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::app::services::messages::Offer;
+use crate::render::worker::Level;
 use crate::scene::ModelSource;
 
 /// How long a message stays, seconds.
@@ -12,7 +13,8 @@ const OPEN_MODEL: Vec2 = vec2(132.0, theme::ROW_HEIGHT);
 /// The latest warnings, errors and what was done, until they are old or closed.
 pub fn show(ui: &mut Ui, area: Rect, desk: &mut Desk) {
     for entry in &mut desk.shared.messages {
-        entry.is_open &= entry.offer == Some(Offer::ImportReport) || entry.at.elapsed().as_secs_f32() < MESSAGE_SECONDS;
+        let stays = entry.level != Level::Info && entry.offer == Some(Offer::ImportReport);
+        entry.is_open &= stays || entry.at.elapsed().as_secs_f32() < MESSAGE_SECONDS;
     }
     let mut open = desk
         .shared
@@ -76,7 +78,7 @@ pub fn open_model(ui: &mut Ui, area: Rect, desk: &mut Desk) {
     let corner = area.left_bottom() + vec2(LOADING_MARGIN, -up);
     let mut inside = over(ui, "open your model", Rect::from_min_size(corner, OPEN_MODEL));
     let button = inside.add(Button::new("Open your model…").min_size(OPEN_MODEL));
-    if button.on_hover_text(Command::OpenModel.help()).clicked() {
-        desk.act(Command::OpenModel);
+    if button.on_hover_text(Command::Open.help()).clicked() {
+        desk.act(Command::Open);
     }
 }

@@ -96,7 +96,7 @@ effects! {
             if facts.settings.catcher.is_some() {
                 Decision::on("the ground shows shadows and reflections alone")
             } else if facts.document.ground {
-                Decision::off("the ground is seen itself")
+                Decision::off("the ground is a surface like others")
             } else {
                 Decision::off("there is no ground")
             }

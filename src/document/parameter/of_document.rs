@@ -24,7 +24,7 @@ pub static SETTINGS: LazyLock<Vec<Parameter<Document>>> = LazyLock::new(|| {
             .named("Background blur").group("Background").flag("background-blur").bar(0.0, 45.0).decimals(1).applies(|document| document.lighting.background == Background::Environment);
         "scene.unit" Display "Scene unit" "Metres per scene unit. Used only to convert the power of lights." field(unit_m, real(range::UNIT_M, "m"))
             .group("Area lights").flag("scene-unit").applies(|document| !document.lighting.area_lights.is_empty());
-        "lighting.light_groups" Sampling "Separate" "Sums the light of each group apart: the mix changes without rendering again, and .exr images get a layer of each group." toggle(lighting.light_groups)
+        "lighting.light_groups" Sampling "Separate by group" "Sums the light of each group apart: the mix changes without rendering again, and .exr images get a layer of each group." toggle(lighting.light_groups)
             .named("Light groups").group("Light groups").flag("light-groups");
         "scene.ground" Geometry "Ground" "A surface under the model that catches its shadow." toggle(ground)
             .flag("ground");
@@ -66,7 +66,7 @@ pub static SETTINGS: LazyLock<Vec<Parameter<Document>>> = LazyLock::new(|| {
             .flag("tone-map");
         "view.exposure" Display "Exposure" "Brightness in stops: +1 doubles it." field(view.exposure_ev, single(range::EXPOSURE_EV, "EV"))
             .flag("exposure").bar(-6.0, 6.0).decimals(2);
-        "view.auto_exposure" Display "Automatic" "Brings the image's mean brightness to middle grey; the exposure is added to that." toggle(view.auto_exposure)
+        "view.auto_exposure" Display "Auto exposure" "Brings the image's mean brightness to middle grey; the exposure is added to that." toggle(view.auto_exposure)
             .named("Automatic exposure").flag("auto-exposure");
         "view.white_balance" Display "White balance" "Temperature of the light that appears white: lower is cooler, higher is warmer." field(view.white_k, single(range::WHITE_K, "K"))
             .flag("white-balance").bar(2500.0, 12_000.0).decimals(0);
@@ -101,15 +101,15 @@ pub static SETTINGS: LazyLock<Vec<Parameter<Document>>> = LazyLock::new(|| {
         "render.seed" Sampling "Seed" "Random seed." field(render.seed, count(0.0..=f64::from(u32::MAX)))
             .flag("seed");
         "render.samples" Goal "Samples" "Samples per pixel at which rendering stops: noise halves with four times as many. With adaptive sampling, the most that a pixel gets." field(render.samples, count(range::SAMPLES))
-            .group("Image").flag("samples");
+            .group("Stop when").flag("samples");
         "render.time" Goal "Time limit" "Stops rendering after this time." field(render.time_s, off(real(range::TIME_S, "s"), Value::Number(60.0)))
-            .group("Image").flag("time");
+            .group("Stop when").flag("time");
         "render.noise" Goal "Noise limit" "Stops at this estimated relative error (RMS pixel error over mean luminance); 0.01 is 1 %." field(render.noise, off(real(range::NOISE, ""), Value::Number(0.01)))
-            .group("Accuracy").flag("noise").percent();
-        "render.min_samples" Goal "Least samples" "Samples that each pixel has before its error is believed, so that small lights are not missed." field(render.min_samples, count(range::MIN_SAMPLES))
-            .named("Minimum samples").group("Accuracy").flag("min-samples");
+            .group("Stop when").flag("noise").percent();
+        "render.min_samples" Goal "Minimum samples" "Samples that each pixel has before its error is believed, so that small lights are not missed." field(render.min_samples, count(range::MIN_SAMPLES))
+            .group("Stop when").flag("min-samples");
         "render.adaptive" Goal "Adaptive" "Adaptive or uniform sampling; auto: adaptive if there is a noise limit." field(render.adaptive, auto(Kind::Toggle))
-            .named("Adaptive sampling").group("Accuracy").flag("adaptive");
+            .named("Adaptive sampling").group("Stop when").flag("adaptive");
     }
 });
 

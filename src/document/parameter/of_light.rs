@@ -26,7 +26,7 @@ pub static LIGHT_PARAMETERS: LazyLock<Vec<Parameter<AreaLight>>> = LazyLock::new
         "lighting.area_lights.color" "Colour" "Colour of the light." color(color);
         "lighting.area_lights.strength" "Strength" "Radiance of the light: a larger one of the same strength gives more light. Of a sun the irradiance of what faces it." field(strength, single(range::STRENGTH, ""))
             .bar(0.0, 100.0);
-        "lighting.area_lights.hidden_from_camera" "Hidden" "It shines, but the camera doesn't see it: only mirrors and glass show it." toggle(is_hidden);
+        "lighting.area_lights.hidden_from_camera" "Hidden from camera" "It shines, but the camera doesn't see it: only mirrors and glass show it." toggle(is_hidden);
     }
 });
 

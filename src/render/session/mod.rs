@@ -343,6 +343,7 @@ impl Session {
             is_fallback: self.is_fallback(),
             kernel_seconds: self.workshop.as_ref().and_then(|workshop| workshop.compile_seconds),
             noise: self.convergence.noise(),
+            cut_share: self.convergence.cut_share,
             noise_wanted: settings.noise,
             denoised: self.denoised,
             targets_denoised: self.shows_nearer(),

@@ -24,7 +24,7 @@ impl Panel for CameraPanel {
         widgets::group(ui, "Bookmarks", |ui| bookmarks(ui, desk));
         widgets::group(ui, "View", |ui| view(ui, desk));
         widgets::group(ui, "Image", |ui| picture(ui, desk));
-        widgets::group(ui, "Accuracy", |ui| desk.settings(ui, "Accuracy"));
+        widgets::group(ui, "Stop when", |ui| desk.settings(ui, "Stop when"));
         widgets::group(ui, "Sampling", |ui| desk.settings(ui, "Sampling"));
     }
 }
@@ -45,7 +45,12 @@ fn view(ui: &mut Ui, desk: &mut Desk) {
 
 fn camera(ui: &mut Ui, desk: &mut Desk) {
     desk.settings(ui, "Camera");
-    widgets::comes_and_goes(ui, |ui| focus(ui, desk));
+    let is_open = desk.document.camera.aperture > 0.0;
+    desk.shared
+        .viewing
+        .picks
+        .take_if(|pick| !is_open && *pick == Pick::Focus);
+    ui.add_enabled_ui(is_open, |ui| focus(ui, desk));
     ui.horizontal_wrapped(|ui| {
         desk.button(ui, Command::FrameAll);
         for (label, yaw_deg, pitch_deg) in [("Front", 0.0, 0.0), ("Side", 90.0, 0.0), ("Top", 0.0, 90.0)] {
@@ -59,10 +64,6 @@ fn camera(ui: &mut Ui, desk: &mut Desk) {
 
 /// The focus distance: until it is given, that of the target, which only the scene knows.
 fn focus(ui: &mut Ui, desk: &mut Desk) {
-    if desk.document.camera.aperture == 0.0 {
-        desk.shared.viewing.picks.take_if(|pick| *pick == Pick::Focus);
-        return;
-    }
     let at_target = desk.scene().map_or(1.0, |scene| {
         let camera = scene.job.settings.camera;
         (camera.focus_distance - camera.parallel_from) * scene.job.geometry.world_units_per_unit
@@ -125,7 +126,7 @@ fn bookmarks(ui: &mut Ui, desk: &mut Desk) {
     desk.document.bookmarks = bookmarks;
 }
 
-/// What the viewport renders and what is saved, and when rendering ends.
+/// What the viewport renders and what is saved.
 fn picture(ui: &mut Ui, desk: &mut Desk) {
     let name = ["Image size", "Size", "What the viewport renders, and what is saved."];
     widgets::choice_row(ui, name, &mut desk.shared.viewing.resolution);
@@ -136,5 +137,4 @@ fn picture(ui: &mut Ui, desk: &mut Desk) {
         }
     });
     widgets::comes_and_goes(ui, |ui| region::show(ui, desk));
-    desk.settings(ui, "Image");
 }

@@ -5,7 +5,6 @@ mod ledger;
 use ledger::LedgerState;
 
 use super::*;
-use crate::app::kit::words::duration;
 use crate::document::effect::{Effect, EffectSwitches, Switch};
 use crate::job::effect::Decision;
 use crate::study::ledger::Entry;
@@ -30,18 +29,8 @@ impl Panel for EffectsPanel {
         let found = self.ledger.worker.found();
         let gain = found.as_ref().and_then(|ledger| ledger.kernel_gain());
         let gain = gain.map_or_else(String::new, |gain| format!(" Specialised kernel: {gain:.1} × as fast."));
-        let mut help = "Unused features are compiled out and cost nothing.".to_owned();
-        if let Some(seconds) = desk.snapshot.progress.kernel_seconds {
-            let time = duration(seconds);
-            help += &format!("\nThe last kernel took {time} to compile, while the CPU engine rendered.");
-        }
-        ui.label(format!(
-            "{} of {count} features active; {} of {} compile-time switches off or fixed.{gain}",
-            plan.effects().len(),
-            plan.left_out(),
-            plan.constants().len()
-        ))
-        .on_hover_text(help);
+        ui.label(format!("{} of {count} features active.{gain}", plan.effects().len()))
+            .on_hover_text("Unused features are compiled out and cost nothing.");
         ledger::controls(ui, desk, &mut self.ledger);
         let switches = desk.document.render.effects;
         if switches != EffectSwitches::default() && ui.button("All automatic").clicked() {

@@ -26,7 +26,7 @@ impl Panel for InspectorPanel {
         choose(ui, desk, &picture);
         widgets::comes_and_goes(ui, |ui| match desk.shared.look.pixel([picture.width, picture.height]) {
             Some(pixel) => values(ui, desk, &picture, pixel),
-            None => widgets::note(ui, "Move the pointer over the image. I stays at a pixel."),
+            None => widgets::note(ui, "Move the pointer over the image. I pins the pixel."),
         });
         widgets::group(ui, "Histogram", |ui| self.brightness.show(ui, &picture));
     }

@@ -40,7 +40,7 @@ fn ground(ui: &mut Ui, desk: &mut Desk) {
     desk.settings(ui, "Ground");
     let has_wall = desk.document.ground && desk.document.lighting.ground.kind == GroundKind::Cyclorama;
     let help = "The camera looks straight at the wall.";
-    if has_wall && widgets::pressed(ui, "Turn the wall away from the camera", help) {
+    if widgets::pressed_if(ui, has_wall, "Turn the wall away from the camera", help, "") {
         desk.document.lighting.ground.yaw_deg = desk.document.camera.yaw_deg;
         desk.edits.note("Cyclorama turned", "");
     }
@@ -54,8 +54,8 @@ fn sources(ui: &mut Ui, desk: &mut Desk) {
     ui.add_space(2.0);
     widgets::comes_and_goes(ui, |ui| rows(ui, desk, &sources));
     ui.add_space(2.0);
-    if widgets::pressed(ui, "Open a file…", Command::OpenEnvironment.help()) {
-        desk.act(Command::OpenEnvironment);
+    if widgets::pressed(ui, "Open a file…", Command::Open.help()) {
+        desk.act(Command::Open);
     }
     ui.add_space(0.5 * theme::GAP);
 }

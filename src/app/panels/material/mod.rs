@@ -9,7 +9,7 @@ use super::*;
 use crate::app::kit::tile::Tile;
 use crate::app::kit::{keys, parameter_row};
 use crate::document::material::Conductor;
-use crate::document::{Kind, MaterialSettings, PARAMETERS, Parameter};
+use crate::document::{MaterialSettings, PARAMETERS, Parameter};
 use crate::optics::fresnel::Fresnel;
 
 /// Side of the ball before a slot's name, points.
@@ -72,7 +72,7 @@ impl Panel for MaterialPanel {
         let mut groups: Vec<&'static str> = PARAMETERS.iter().map(|parameter| parameter.group).collect();
         groups.dedup();
         // The switches of textures stand beside their images.
-        let is_shown = |parameter: &&Parameter| !matches!(parameter.kind, Kind::Toggle) && (parameter.applies)(&before);
+        let is_shown = |parameter: &&Parameter| !parameter.key.ends_with("_texture") && (parameter.applies)(&before);
         for group in groups {
             let parameters = || PARAMETERS.iter().filter(|parameter| parameter.group == group);
             // What says nothing is folded whenever another material is shown; the user opens it for as long.
@@ -208,7 +208,8 @@ fn name(ui: &mut Ui, desk: &mut Desk, material: &mut MaterialSettings) {
         }
         let more = icons::button(ui, Icon::More, "Material menu", "Open, save, reset");
         Popup::menu(&more).show(|ui| {
-            for command in [Command::OpenMaterial, Command::SaveMaterial, Command::ResetMaterial] {
+            use Command::{Open, ResetMaterial, SaveMaterial, SaveToMyPresets};
+            for command in [Open, SaveMaterial, SaveToMyPresets, ResetMaterial] {
                 desk.button(ui, command);
             }
         });

@@ -85,11 +85,7 @@ impl Entry {
 
     fn environment(desk: &Desk, source: EnvironmentSource) -> Self {
         let (key, label) = (environment_key(&source), environment_label(&source));
-        Self {
-            // The panel of the light calls it by its name alone.
-            full_name: format!("Environment {label}"),
-            ..Self::new(desk, key, label, EntryKind::Environment(source))
-        }
+        Self::new(desk, key, label, EntryKind::Environment(source))
     }
 
     /// Whether its name, its group, its tags and the words of its look have each word that is searched for, in lower case.
@@ -105,6 +101,12 @@ impl Entry {
         search
             .split_whitespace()
             .all(|word| texts.iter().any(|text| text.contains(word)))
+    }
+
+    /// Whether its name has each word that is searched for, in lower case.
+    pub fn is_named(&self, search: &str) -> bool {
+        let name = self.name.to_lowercase();
+        search.split_whitespace().all(|word| name.contains(word))
     }
 
     /// Width of its image over the height.
@@ -245,12 +247,11 @@ fn taking_along(ui: &mut Ui, material: &MaterialSettings, actions: &mut Vec<Acti
     });
 }
 
-/// Everything, in groups: favourites, shipped materials by kind, the user's own, watched folders, environments.
+/// Everything, in groups: favourites, shipped materials by kind, the user's own, watched folders.
 pub fn groups(desk: &mut Desk) -> Vec<Group> {
     let mut groups: Vec<Group> = shipped(desk);
     groups.push(Group::new("Mine", own(desk)));
     groups.extend(watched(desk));
-    groups.push(Group::new("Environments", environments(desk)));
     let entries = groups.iter().flat_map(|group| &group.entries);
     let subject = |entry: &Entry| {
         let subject = match &entry.kind {
@@ -323,15 +324,4 @@ fn found(desk: &Desk, folder: &Path, item: &Item) -> Entry {
     let within = path.strip_prefix(folder.parent().unwrap_or(folder)).unwrap_or(path);
     entry.full_name = format!("{} ({})", entry.name, within.display());
     entry
-}
-
-/// Those that come with the program, the one in use, and those opened last, but for what lies in watched folders.
-fn environments(desk: &Desk) -> Vec<Entry> {
-    let folders = &desk.shared.shelves.kept.folders;
-    let is_shown = |source: &EnvironmentSource| match source {
-        EnvironmentSource::File(path) => !folders.iter().any(|folder| path.starts_with(folder)),
-        _ => true,
-    };
-    let sources = desk.environments(usize::MAX).into_iter().filter(is_shown);
-    sources.map(|source| Entry::environment(desk, source)).collect()
 }

@@ -73,8 +73,18 @@ impl PresetsPanel {
             side if side > LIST => Layout::Grid(side),
             side => Layout::List(side),
         };
+        // The name of what was just saved is asked for where it stands.
+        let own = desk.shared.library.renaming.as_ref().map(|_| "Mine");
+        if own.is_some() {
+            (self.search, self.tag) = Default::default();
+        }
         let wanted = self.search.to_lowercase();
-        let groups = groups(desk);
+        let mut groups = groups(desk);
+        // Names that are searched for stand before groups, tags and looks.
+        groups
+            .iter_mut()
+            .for_each(|group| group.entries.sort_by_key(|entry| !entry.is_named(&wanted)));
+        groups.sort_by_key(|group| group.entries.first().is_some_and(|entry| !entry.is_named(&wanted)));
         let mut found = false;
         for mut group in groups {
             let kept = &desk.shared.shelves.kept;
@@ -86,7 +96,8 @@ impl PresetsPanel {
                 continue;
             }
             found = true;
-            widgets::group(ui, &group.title, |ui| {
+            let opens = (own == Some(&*group.title)).then_some(true);
+            widgets::group_open(ui, &group.title, opens, |ui| {
                 if let Some(folder) = &group.folder
                     && ui.small_button(format!("Stop watching {}", group.title)).clicked()
                 {
