@@ -11,24 +11,12 @@ fn node_below(value: f32, nodes: u32) -> vec2f {
     return vec2f(low, position - low);
 }
 
-fn albedo_lookup(albedo_table: u32, place: f32) -> vec3f {
-    let below = node_below(place, ALBEDO_NODES);
-    let beyond = below.y;
-    // A loop over the nodes that have weight, so that the code that loads one is there once.
-    var sum = vec3f();
-    for (var node = 0u; node < select(1u, 2u, beyond > 0.0); node++) {
-        sum += table_numbers(albedo_table, u32(below.x) + node).xyz * select(1.0 - beyond, beyond, node == 1u);
-    }
-    return sum;
-}
-
 fn azimuth_place(anisotropy: f32, frame: Frame, wo: vec3f) -> f32 {
     let stretch = stretch_from_anisotropy(anisotropy);
     let widths = vec2f(stretch * stretch, 1.0 / (stretch * stretch));
     let along = vec2f(dot(frame.tangent, wo), dot(frame.bitangent, wo));
-    let width = sqrt(dot(along * along, widths) / max(dot(along, along), 1e-30));
     let ends = sqrt(vec2f(min(widths.x, widths.y), max(widths.x, widths.y)));
-    return (width - ends.x) / max(ends.y - ends.x, 1e-6);
+    return (sqrt(dot(along * along, widths) / max(dot(along, along), 1e-30)) - ends.x) / max(ends.y - ends.x, 1e-6);
 }
 
 fn albedo_place(cosine: f32, eta: f32) -> f32 {
@@ -50,18 +38,19 @@ fn table_lookup(table: u32, nodes: u32, place: f32) -> f32 {
     return left + (table_number(table, low + 1u) - left) * below.y;
 }
 
+// A table over the view alone is read at roughness 0.
 fn rough_albedo_lookup(albedo_table: u32, place: f32, roughness: f32) -> vec4f {
     let step = node_below(roughness, ROUGHNESS_NODES);
     let below = node_below(place, ALBEDO_NODES);
     let first = u32(step.x) * ALBEDO_NODES + u32(below.x);
-    let across = below.y;
-    let down = step.y;
-    var sum = vec4f();
-    for (var node = 0u; node < select(2u, 4u, down > 0.0); node++) {
-        let share = select(1.0 - across, across, (node & 1u) != 0u) * select(1.0 - down, down, node > 1u);
-        sum += table_numbers(albedo_table, first + (node & 1u) + ALBEDO_NODES * (node >> 1u)) * share;
+    // A loop over the rows that have weight. Between equal numbers it is exact: total reflection leaves nothing.
+    var found = vec4f();
+    for (var row = 0u; row < select(1u, 2u, step.y > 0.0); row++) {
+        let left = table_numbers(albedo_table, first + ALBEDO_NODES * row);
+        let along = left + (table_numbers(albedo_table, first + ALBEDO_NODES * row + 1u) - left) * below.y;
+        found += (along - found) * select(step.y, 1.0, row == 0u);
     }
-    return sum;
+    return found;
 }
 
 // `film` is what the film changes of the dielectric, untinted; its last number is 1 where that is known.
@@ -82,7 +71,7 @@ fn rough_albedo(terms: FresnelTerms, integrals: vec4f, film: vec4f) -> vec3f {
     if shows_film(terms) {
         // No table has every thickness or metal: the lobe counts as its mean facet.
         let facet = mean_facet(integrals.y, integrals.z);
-        var change = film.xyz * min(terms.tint, vec3f(1.0)) * terms.weight;
+        var change = film.xyz * min(terms.tint, WHITE) * terms.weight;
         if film.w == 0.0 {
             change = film_change_of_dielectric(terms, facet.x) * facet.y;
         }

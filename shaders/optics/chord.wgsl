@@ -107,8 +107,7 @@ fn chord_reciprocal_integral(chord: Chord) -> f32 {
     let y1 = product_root * w_last;
     let x0 = chord.nearest * (first - chord.nearest + 2.0 * chord.spread);
     let y0 = product_root * w_first;
-    let angle = atan2(y1 * x0 + y0 * x1, x1 * x0 - y1 * y0);
-    let inverse = 2.0 * angle / product_root;
+    let inverse = 2.0 * atan2(y1 * x0 + y0 * x1, x1 * x0 - y1 * y0) / product_root;
     let zeroth = chord_range(chord);
     let first_moment = w_last + w_first + chord.centre * zeroth;
     return chord_weighed(chord, vec3f(inverse, zeroth, first_moment), vec2f(log(last / first), last - first));
@@ -140,8 +139,7 @@ fn chord_polynomial_integral(chord: Chord, h: vec3f) -> f32 {
 // By the nodes of GAUSS from `first` to before `end`.
 fn chord_quadrature(curve: u32, first: u32, end: u32, chord: Chord) -> f32 {
     let mu = 0.5 * chord.odd.x / chord.a_root;
-    let range_max = RANGE_MAX.x + RANGE_MAX.y * max(mu, 0.0);
-    let half_range = 0.5 * min(chord_range(chord), range_max);
+    let half_range = 0.5 * min(chord_range(chord), RANGE_MAX.x + RANGE_MAX.y * max(mu, 0.0));
     let middle = (1.0 + chord_growth(chord, chord.last)) * exp(-half_range);
     // The nodes' exponentials come in pairs, e^(m + d) and e^(m - d).
     var sum = 0.0;
@@ -192,13 +190,10 @@ fn chord_table_section(table: u32, chord: Chord, start: vec2f, end: f32, odd: f3
         let intercept = numbers.y - slope * (width * f32(interval));
         let moments = chord_interval(chord, low, high, interval < begin + 2u);
         let i1 = high.y - low.y + chord.centre * moments.y;
-        let ends = high.x * high.y - low.x * low.y;
-        let i2 = 0.5 * (ends + 3.0 * chord.centre * i1 + chord.product * moments.y);
-        let d0 = odd * log(high.x / low.x);
+        let i2 = 0.5 * (high.x * high.y - low.x * low.y + 3.0 * chord.centre * i1 + chord.product * moments.y);
         let d1 = odd * (high.x - low.x);
-        let d2 = 0.5 * d1 * (high.x + low.x);
-        sum += intercept * chord_weighed(chord, vec3f(moments, i1), vec2f(d0, d1))
-            + slope * chord_weighed(chord, vec3f(moments.y, i1, i2), vec2f(d1, d2));
+        sum += intercept * chord_weighed(chord, vec3f(moments, i1), vec2f(odd * log(high.x / low.x), d1))
+            + slope * chord_weighed(chord, vec3f(moments.y, i1, i2), vec2f(d1, 0.5 * d1 * (high.x + low.x)));
         low = high;
     }
     return sum;
@@ -220,14 +215,10 @@ fn chord_interval(chord: Chord, low: vec2f, high: vec2f, is_near: bool) -> vec2f
 
 fn chord_log_ratio(z: f32) -> f32 {
     let square = z * z;
-    let above = 945.0 - square * (735.0 - square * 64.0);
-    let below = 945.0 - square * (1050.0 - square * 225.0);
-    return 2.0 * z * above / below;
+    return 2.0 * z * (945.0 - square * (735.0 - square * 64.0)) / (945.0 - square * (1050.0 - square * 225.0));
 }
 
 fn chord_angle(z: f32, product: f32) -> f32 {
     let square = product * z * z;
-    let above = 945.0 + square * (735.0 + square * 64.0);
-    let below = 945.0 + square * (1050.0 + square * 225.0);
-    return z * above / below;
+    return z * (945.0 + square * (735.0 + square * 64.0)) / (945.0 + square * (1050.0 + square * 225.0));
 }

@@ -2,8 +2,7 @@
 #import "optics/material"
 
 fn way_length(material: Material, cosine: f32) -> f32 {
-    let behind = safe_sqrt(refracted_square(cosine, material.coat_ior)) / material.coat_ior;
-    return 1.0 / max(behind, WAY_COSINE_MIN);
+    return 1.0 / max(safe_sqrt(refracted_square(cosine, material.coat_ior)) / material.coat_ior, WAY_COSINE_MIN);
 }
 
 // The coat's colour, that of a way in and out at right angles, over a way of this length.
@@ -14,7 +13,7 @@ fn color_over(material: Material, way: f32) -> vec3f {
 // What such a coat leaves of the light that a surface emits at this cosine to its normal.
 fn coat_over_emission(material: Material, cosine: f32, is_back: bool) -> vec3f {
     if !has_flag(material, COAT_ABSORBS) || (is_back && material_transmits(material)) {
-        return vec3f(1.0);
+        return WHITE;
     }
-    return mix(vec3f(1.0), color_over(material, way_length(material, abs(cosine))), material.coat_weight);
+    return mix(WHITE, color_over(material, way_length(material, abs(cosine))), material.coat_weight);
 }

@@ -19,11 +19,9 @@ fn frame_from_normal(normal: vec3f) -> Frame {
 }
 
 fn frame_from_tangent(normal: vec3f, tangent: vec3f, rotation_rad: f32) -> Frame {
-    let fallback = frame_from_normal(normal).tangent;
-    let flat_tangent = normalize_or(tangent - normal * dot(normal, tangent), fallback);
-    let across = cross(normal, flat_tangent);
+    let flat_tangent = normalize_or(tangent - normal * dot(normal, tangent), frame_from_normal(normal).tangent);
     let turn = unit_circle(rotation_rad * (0.5 * INV_PI));
-    let turned = flat_tangent * turn.x + across * turn.y;
+    let turned = flat_tangent * turn.x + cross(normal, flat_tangent) * turn.y;
     return Frame(turned, cross(normal, turned), normal);
 }
 

@@ -22,7 +22,7 @@ struct FresnelTerms {
 fn untinted(terms: FresnelTerms) -> FresnelTerms {
     var without = terms;
     if terms.model == FRESNEL_DIELECTRIC {
-        without.tint = vec3f(1.0);
+        without.tint = WHITE;
     }
     return without;
 }
@@ -122,8 +122,7 @@ fn fresnel_dielectric(cosine: f32, ior: f32) -> f32 {
     let g = safe_sqrt(square);
     let perpendicular = (c - g) / max(c + g, 1e-12);
     let parallel = (ior * ior * c - g) / max(ior * ior * c + g, 1e-12);
-    let value = 0.5 * (perpendicular * perpendicular + parallel * parallel);
-    return select(value, 1.0, square < 0.0);
+    return select(0.5 * (perpendicular * perpendicular + parallel * parallel), 1.0, square < 0.0);
 }
 
 fn fresnel_left(terms: FresnelTerms, cosine: f32, behind: f32) -> vec3f {
@@ -156,14 +155,12 @@ fn fresnel_conductor(cosine: f32, eta: f32, k: f32) -> f32 {
     let scaled = vec2f(t0, u) / largest;
     let a2_plus_b2 = largest * sqrt(dot(scaled, scaled));
     let leg = sqrt(0.5 * (a2_plus_b2 + abs(t0)));
-    let a = select(leg, 0.5 * u / max(leg, 1e-30), t0 < 0.0);
     let t1 = a2_plus_b2 + cos2;
-    let t2 = 2.0 * a * c;
+    let t2 = 2.0 * select(leg, 0.5 * u / max(leg, 1e-30), t0 < 0.0) * c;
     let perpendicular = (t1 - t2) / max(t1 + t2, 1e-37);
     let t3 = cos2 * a2_plus_b2 + sin2 * sin2;
     let t4 = t2 * sin2;
     // Head-on both may be 0; there both polarisations are alike.
-    let ratio = select((t3 - t4) / max(t3 + t4, 1e-37), 1.0, t3 + t4 < 1e-37);
-    let parallel = perpendicular * ratio;
+    let parallel = perpendicular * select((t3 - t4) / max(t3 + t4, 1e-37), 1.0, t3 + t4 < 1e-37);
     return saturate(0.5 * (perpendicular + parallel));
 }

@@ -49,27 +49,24 @@ fn has_coated_table(material: Material) -> bool {
 }
 
 fn has_film_table(material: Material) -> bool {
-    let has_index = material.fresnel == FRESNEL_SCHLICK || material.fresnel == FRESNEL_DIELECTRIC;
-    let is_varied = material.film_texture != NO_TEXTURE || material.film_thickness_texture != NO_TEXTURE;
-    return material.has_film == 1u && holds_integrals(material) && has_index && !is_varied && !has_coated_table(material);
+    return (material.has_rough_tables & HOLDS_FILM) != 0u;
 }
 
 // GGX's roughness under a coat of this weight.
 fn roughness_under_coat(material: Material, roughness: f32, weight: f32) -> f32 {
     let square = roughness * roughness;
-    let blurred = sqrt(sqrt(min(square * square + material.coat_blur, 1.0)));
-    return roughness + (blurred - roughness) * weight;
+    return roughness + (sqrt(sqrt(min(square * square + material.coat_blur, 1.0))) - roughness) * weight;
 }
 
 fn material_fresnel_terms(material: Material, is_inside: bool) -> FresnelTerms {
     let is_bare = is_inside && material_transmits(material);
-    let tint = select(material.specular_color, vec3f(1.0), is_bare);
+    let tint = select(material.specular_color, WHITE, is_bare);
     let weight = select(material.specular_weight, 1.0, is_bare);
     let of_dielectric = select(weight, 1.0, has_flag(material, WEIGHS_INDEX));
     let coat = select(ior_of_coat(material), 1.0, is_bare);
     return FresnelTerms(
         planned(material.fresnel, PLAN_FRESNEL), material.base_color, material.metalness, material.edge_tint, tint,
-        select(weight * tint, vec3f(1.0), has_flag(material, SPARES_METAL)), of_dielectric, reflecting_ior_ahead(material, is_inside),
+        select(weight * tint, WHITE, has_flag(material, SPARES_METAL)), of_dielectric, reflecting_ior_ahead(material, is_inside),
         material.eta / coat, material.k / coat, coat, material.has_film == 1u, material_film_terms(material, is_bare, coat),
     );
 }
@@ -85,10 +82,7 @@ fn material_film_terms(material: Material, is_within: bool, coat: f32) -> FilmTe
 
 // The index before the specular interface.
 fn ior_of_coat(material: Material) -> f32 {
-    if !PLAN_COAT || !has_flag(material, COATS_BASE) {
-        return 1.0;
-    }
-    return 1.0 + (material.coat_ior - 1.0) * material.coat_weight;
+    return select(1.0, 1.0 + (material.coat_ior - 1.0) * material.coat_weight, PLAN_COAT && has_flag(material, COATS_BASE));
 }
 
 fn holds_integrals(material: Material) -> bool {
@@ -100,11 +94,12 @@ fn has_rows(material: Material) -> bool {
     return (PLAN_ROUGH_TABLES || PLAN_ANISOTROPY) && material.has_rough_tables != 0u;
 }
 
+// Where such tables are read along their second side; 0 in others.
 fn table_row(material: Material, surface: Surface) -> f32 {
     if PLAN_ANISOTROPY && (material.has_rough_tables & OVER_AZIMUTH) != 0u {
         return azimuth_place(material.anisotropy, surface.frame, surface.wo);
     }
-    return material.roughness;
+    return select(0.0, material.roughness, has_rows(material));
 }
 
 fn material_has_holes(material: Material) -> bool {

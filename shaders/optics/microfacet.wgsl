@@ -11,11 +11,10 @@ struct Facet {
 
 fn facet(frame: Frame, wo_world: vec3f, wi_world: vec3f) -> Facet {
     let sum = wo_world + wi_world;
-    let h = normalize_or(sum, frame.normal);
     return Facet(
         local_from_world(frame, wo_world),
         local_from_world(frame, wi_world),
-        local_from_world(frame, h),
+        local_from_world(frame, normalize_or(sum, frame.normal)),
         min(0.5 * length(sum), 1.0),
     );
 }
@@ -42,14 +41,12 @@ fn smith_g2_over_cosine(alpha: vec2f, wo: vec3f, wi: vec3f) -> f32 {
 
 fn visible_density(alpha: vec2f, frame: Frame, wo: vec3f, wi: vec3f) -> f32 {
     let f = facet(frame, wo, wi);
-    let value = 0.25 * ggx_distribution(alpha, f.h) * smith_g1_over_cosine(alpha, f.wo);
-    return select(0.0, value, f.h.z > 0.0);
+    return select(0.0, 0.25 * ggx_distribution(alpha, f.h) * smith_g1_over_cosine(alpha, f.wo), f.h.z > 0.0);
 }
 
 fn visible_weight(alpha: vec2f, frame: Frame, wo_world: vec3f, wi_world: vec3f) -> f32 {
     let wo = local_from_world(frame, wo_world);
-    let wi = local_from_world(frame, wi_world);
-    return smith_g2_over_cosine(alpha, wo, wi) / smith_g1_over_cosine(alpha, wo);
+    return smith_g2_over_cosine(alpha, wo, local_from_world(frame, wi_world)) / smith_g1_over_cosine(alpha, wo);
 }
 
 fn distribution_weight(alpha: vec2f, f: Facet) -> f32 {

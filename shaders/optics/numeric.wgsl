@@ -3,6 +3,10 @@
 const PI = 3.14159265358979f;
 const INV_PI = 0.318309886183791f;
 
+const WHITE = vec3f(1.0);
+// The normal of a local frame.
+const UPWARDS = vec3f(0.0, 0.0, 1.0);
+
 fn expm1(x: f32) -> f32 {
     let series = x * (1.0 + x * (0.5 + x * (0.16666667 + x * 0.041666668)));
     return select(exp(x) - 1.0, series, abs(x) < 0.01);
@@ -57,8 +61,11 @@ fn safe_sqrt(x: f32) -> f32 {
 fn normalize_or(v: vec3f, fallback: vec3f) -> vec3f {
     let square = dot(v, v);
     let usable = square > 1e-30;
-    let scale = 1.0 / sqrt(select(1.0, square, usable));
-    return select(fallback, v * scale, usable);
+    return select(fallback, v * (1.0 / sqrt(select(1.0, square, usable))), usable);
+}
+
+fn max_component(v: vec3f) -> f32 {
+    return max(max(v.x, v.y), v.z);
 }
 
 fn luminance(colour: vec3f) -> f32 {

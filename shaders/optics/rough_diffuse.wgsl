@@ -7,11 +7,10 @@ fn rough_diffuse(albedo: vec3f, roughness: f32, cosines: vec2f, between: f32) ->
     let head_on = 1.0 / (1.0 + roughness * HEAD_ON);
     var across = between - c.x * c.y;
     across = select(across, across / max(c.x, c.y), across > 0.0);
-    let once = head_on * (1.0 + roughness * across);
     let mean = head_on * (1.0 + roughness * MEAN);
     let lost = max(1.0 - single_albedo(c.x, roughness), 0.0) * max(1.0 - single_albedo(c.y, roughness), 0.0);
     let again = mean * lost / max(1.0 - mean, 1e-6);
-    return vec3f(once) + albedo * again / (1.0 - albedo * (1.0 - mean));
+    return vec3f(head_on * (1.0 + roughness * across)) + albedo * again / (1.0 - albedo * (1.0 - mean));
 }
 
 fn single_albedo(cosine: f32, roughness: f32) -> f32 {

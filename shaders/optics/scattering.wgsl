@@ -8,33 +8,25 @@ fn compensates(material: Material) -> bool {
 
 fn interface_gain(material: Material, surface: Surface, shape: LobeShape) -> vec3f {
     if !compensates(material) {
-        return vec3f(1.0);
+        return WHITE;
     }
-    let is_inside = is_within(material, surface);
-    let first = kept_energies(material, surface, shape, 0u);
-    var kept = vec3f(select(first.y, first.z, is_inside));
-    if PLAN_THIN_FILM && material.has_film == 1u && material_transmits(material) {
-        // A film shares the light otherwise in each channel.
-        for (var channel = 1u; channel < 3u; channel++) {
-            let other = kept_energies(material, surface, shape, channel);
-            kept = select(kept, vec3f(select(other.y, other.z, is_inside)), vec3u(0u, 1u, 2u) == vec3u(channel));
-        }
+    // A film shares the light otherwise in each channel.
+    let has_channels = PLAN_THIN_FILM && material.has_film == 1u && material_transmits(material);
+    var kept = vec3f();
+    for (var channel = 0u; channel < select(1u, 3u, has_channels); channel++) {
+        let energies = kept_energies(material, surface, shape, channel);
+        let energy = select(energies.y, energies.z, is_within(material, surface));
+        kept = select(kept, vec3f(energy), vec3u(0u, 1u, 2u) >= vec3u(channel));
     }
-    return 1.0 / kept;
+    return 1.0 / max(kept, vec3f(1e-6));
 }
 
 fn scattered_again(
     material: Material, surface: Surface, shape: LobeShape, terms: FresnelTerms, cosine: f32, once: vec3f,
 ) -> vec3f {
-    if compensates(material) {
-        return compensated(material, surface, shape, terms, cosine);
+    if !compensates(material) {
+        return once;
     }
-    return once;
-}
-
-fn compensated(
-    material: Material, surface: Surface, shape: LobeShape, terms: FresnelTerms, cosine: f32,
-) -> vec3f {
     let kept = kept_energies(material, surface, shape, 0u).x;
     let again = (1.0 - kept) / kept;
     if terms.model == FRESNEL_NONE || terms.model == FRESNEL_CONDUCTOR {
@@ -46,17 +38,14 @@ fn compensated(
     if shows_film(terms) {
         head_on = fresnel_parts(terms, 1.0).metal;
     }
-    let metal = parts.metal * (1.0 + head_on * again);
     // The refracting share of a dielectric is clear; the rest lies over a base.
     let share = select(0.0, material.transmission_weight, material_transmits(material));
-    let gain = 1.0 + (interface_gain(material, surface, shape) - vec3f(1.0)) * share;
-    return mix(parts.dielectric * gain, metal, terms.metalness);
+    let gain = 1.0 + (interface_gain(material, surface, shape) - WHITE) * share;
+    return mix(parts.dielectric * gain, parts.metal * (1.0 + head_on * again), terms.metalness);
 }
 
 fn kept_energies(material: Material, surface: Surface, shape: LobeShape, channel: u32) -> vec3f {
     let place = safe_sqrt(dot(surface.frame.normal, surface.wo));
-    if has_rows(material) {
-        return rough_albedo_lookup(shape.table + channel * ROUGH_ALBEDO_LENGTH, place, table_row(material, surface)).xyz;
-    }
-    return albedo_lookup(shape.table + channel * 4u * ALBEDO_NODES, place);
+    let length = select(4u * ALBEDO_NODES, ROUGH_ALBEDO_LENGTH, has_rows(material));
+    return rough_albedo_lookup(shape.table + channel * length, place, table_row(material, surface)).xyz;
 }

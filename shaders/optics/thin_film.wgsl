@@ -14,7 +14,7 @@ fn film_change_of_dielectric(terms: FresnelTerms, cosine: f32) -> vec3f {
     if !(terms.metalness < 1.0) {
         return vec3f();
     }
-    return -(min(terms.tint, vec3f(1.0)) * film_passed(terms, cosine, -1.0)) * terms.weight;
+    return -(min(terms.tint, WHITE) * film_passed(terms, cosine, -1.0)) * terms.weight;
 }
 
 fn film_change_of_metal(terms: FresnelTerms, cosine: f32) -> vec3f {
@@ -25,16 +25,14 @@ fn film_change_of_metal(terms: FresnelTerms, cosine: f32) -> vec3f {
 }
 
 fn cosine_in_coat(terms: FresnelTerms, cosine: f32) -> f32 {
-    let in_coat = min(safe_sqrt(refracted_square(cosine, terms.coat)) / terms.coat, 1.0);
-    return select(cosine, in_coat, terms.coat != 1.0);
+    return select(cosine, safe_sqrt(refracted_square(cosine, terms.coat)) / terms.coat, terms.coat != 1.0);
 }
 
 // `height` is negative where it is not known.
 fn film_passed(terms: FresnelTerms, from_normal: f32, height: f32) -> vec3f {
     let cosine = max(cosine_in_coat(terms, from_normal), LEAST_FILM_COSINE);
     let index = terms.film.behind;
-    let under_coat = safe_sqrt(refracted_square(cosine, index));
-    let beyond = select(height, under_coat, height < 0.0 || terms.coat != 1.0);
+    let beyond = select(height, safe_sqrt(refracted_square(cosine, index)), height < 0.0 || terms.coat != 1.0);
     let behind = vec4f(beyond, 0.0, beyond / (index * index), 0.0);
     let bare = entered_bare(cosine, behind);
     return (entered(terms.film, cosine, mat3x4f(behind, behind, behind)) - vec3f(bare)) * terms.film.weight;
@@ -46,8 +44,7 @@ fn film_on_conductor(terms: FresnelTerms, from_normal: f32, bare: vec3f) -> vec3
     for (var channel = 0u; channel < 3u; channel++) {
         behind[channel] = admittances(cosine, terms.eta[channel], terms.k[channel]);
     }
-    let filmed = 1.0 - entered(terms.film, cosine, behind);
-    return mix(bare, max(filmed, vec3f()), terms.film.weight);
+    return mix(bare, max(1.0 - entered(terms.film, cosine, behind), vec3f()), terms.film.weight);
 }
 
 fn film_on_metal(terms: FresnelTerms, cosine: f32) -> vec3f {
@@ -68,8 +65,7 @@ fn index_of_colors(f0: f32, edge: f32) -> vec2f {
     let r = min(f0, LARGEST_FILM_F0);
     let root = sqrt(r);
     let eta = edge * (1.0 - r) / (1.0 + r) + (1.0 - edge) * (1.0 + root) / (1.0 - root);
-    let square = ((eta + 1.0) * (eta + 1.0) * r - (eta - 1.0) * (eta - 1.0)) / (1.0 - r);
-    return vec2f(eta, safe_sqrt(square));
+    return vec2f(eta, safe_sqrt(((eta + 1.0) * (eta + 1.0) * r - (eta - 1.0) * (eta - 1.0)) / (1.0 - r)));
 }
 
 // For both polarisations: perpendicular, then parallel, each real and imaginary.
@@ -99,31 +95,26 @@ fn entered(film: FilmTerms, cosine: f32, behind: mat3x4f) -> vec3f {
         let phase = path * height;
         let circle = unit_circle(phase * (0.5 * INV_PI));
         let across = path * select(circle.y / max(phase, FILM_TINY), 1.0, phase < 1e-4);
-        let both = media[channel];
-        let perpendicular = entered_polarised(cosine, both.xy, square, vec2f(circle.x, across));
-        let parallel = entered_polarised(
-            cosine, both.zw, square / (index_square * index_square), vec2f(circle.x, across * index_square),
-        );
-        sum[channel] = 0.5 * (perpendicular + parallel);
+        let squares = vec2f(square, square / (index_square * index_square));
+        sum[channel] = entered_polarised(cosine, media[channel], squares, circle.x, vec2f(across, across * index_square));
     }
     return sum;
 }
 
 fn entered_bare(cosine: f32, behind: vec4f) -> f32 {
-    let bare = vec2f(1.0, 0.0);
-    let perpendicular = entered_polarised(cosine, behind.xy, 0.0, bare);
-    return 0.5 * (perpendicular + entered_polarised(cosine, behind.zw, 0.0, bare));
+    return entered_polarised(cosine, behind, vec2f(), 1.0, vec2f());
 }
 
-fn entered_polarised(before: f32, behind: vec2f, film_square: f32, film: vec2f) -> f32 {
-    let x = (before + behind.x) * film.x + before * behind.y * film.y;
-    let y = behind.y * film.x - (before * behind.x + film_square) * film.y;
-    return 4.0 * before * behind.x / max(x * x + y * y, FILM_TINY);
+// The mean of both polarisations, which are the components here.
+fn entered_polarised(before: f32, behind: vec4f, film_square: vec2f, along: f32, across: vec2f) -> f32 {
+    let x = (before + behind.xz) * along + before * behind.yw * across;
+    let y = behind.yw * along - (before * behind.xz + film_square) * across;
+    let entered = 4.0 * before * behind.xz / max(x * x + y * y, vec2f(FILM_TINY));
+    return 0.5 * (entered.x + entered.y);
 }
 
 // The mean facet's cosine, and the lobe's albedo.
 fn mean_facet(constant: f32, grazing: f32) -> vec2f {
     let energy = constant + grazing;
-    let share = clamp(grazing / max(energy, FILM_TINY), FILM_TINY, 1.0);
-    return vec2f(1.0 - pow(share, 0.2), energy);
+    return vec2f(1.0 - pow(clamp(grazing / max(energy, FILM_TINY), FILM_TINY, 1.0), 0.2), energy);
 }

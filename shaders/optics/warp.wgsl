@@ -22,7 +22,6 @@ struct Part {
 // Chooses with a number, and remaps it for further use.
 fn split(number: f32, share: f32) -> Part {
     let is_below = number < share;
-    let start = select(share, 0.0, is_below);
     let length = max(select(1.0 - share, share, is_below), 1e-20);
-    return Part(is_below, min((number - start) / length, 0.99999994));
+    return Part(is_below, min((number - select(share, 0.0, is_below)) / length, 0.99999994));
 }

@@ -98,8 +98,7 @@ fn plain_background(sky: vec3f) -> vec4f {
     if needs_environment(0u, true) {
         return vec4f(sky, 1.0);
     }
-    let is_transparent = globals.background_kind == BACKGROUND_TRANSPARENT;
-    return select(vec4f(globals.background, 1.0), vec4f(), is_transparent);
+    return select(vec4f(globals.background, 1.0), vec4f(), globals.background_kind == BACKGROUND_TRANSPARENT);
 }
 
 // Whether the kernel is compiled with light sampling.

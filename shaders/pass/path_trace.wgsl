@@ -44,18 +44,6 @@ struct GuideSums {
 // Two elements per pixel: even-numbered samples, then odd-numbered ones.
 @group(1) @binding(4) var<storage, read_write> guide_sums: array<GuideSums>;
 
-// Adds the groups' light of a path to the sums of its pixel; `odd` is 1 for a sample of an odd number, else 0.
-fn sum_groups(index: u32, odd: f32) {
-    if PLAN_LIGHT_GROUPS {
-        for (var group = 0u; group < globals.light_groups; group++) {
-            let place = (1u + group) * band.y + index;
-            let light = vec4f(group_light(group), 0.0);
-            color_sums[place].all += light;
-            color_sums[place].odd += odd * light;
-        }
-    }
-}
-
 struct PathResult {
     radiance: vec3f,
     alpha: f32,
@@ -93,14 +81,14 @@ fn add_light(path: ptr<function, PathResult>, contribution: vec3f, reflections: 
     if reflections < globals.least_reflections {
         return;
     }
-    let largest = max(max(contribution.x, contribution.y), contribution.z);
+    let largest = max_component(contribution);
     var kept = 1.0;
     if PLAN_FIREFLY_CLAMP && reflections > 1u && largest > globals.firefly_clamp {
         kept = globals.firefly_clamp / largest;
-        (*path).clamped += luminance(contribution) * (1.0 - kept);
+        path.clamped += luminance(contribution) * (1.0 - kept);
     }
     let light = contribution * kept;
-    (*path).radiance += light;
+    path.radiance += light;
     add_to_group(group, light);
 }
 
@@ -119,7 +107,7 @@ fn medium_towards(medium: u32, point: SurfacePoint, slot: u32, wi: vec3f, transm
 // Beer-Lambert transmittance of a medium over a distance, per channel.
 fn transmittance_over(medium: u32, distance: f32) -> vec3f {
     if medium == NO_MEDIUM {
-        return vec3f(1.0);
+        return WHITE;
     }
     return exp(-material_at(medium).absorption * distance);
 }
@@ -137,20 +125,20 @@ struct CatcherHit {
 // Hit of a camera ray on the shadow catcher. The catcher is invisible from below and without light.
 fn hit_catcher(position: vec3f, direction: vec3f, state: RandomState) -> CatcherHit {
     let light = catcher_light(globals.catcher_table, position);
-    let is_visible = direction.y < 0.0 && max(max(light.x, light.y), light.z) > 0.0;
+    let is_visible = direction.y < 0.0 && max_component(light) > 0.0;
     // An invisible catcher uses the random pair of a ray that missed.
     let background = camera_background(direction, state, select(FIRST_DIMENSION, CATCHER_DIMENSION + 1u, is_visible));
     let is_mirrored = random_pair(state, CATCHER_DIMENSION).x < catcher_reflectance(globals.catcher_table, -direction.y);
     if !is_visible || is_mirrored {
-        return CatcherHit(select(CATCHER_MISS, CATCHER_MIRRORED, is_visible), vec3f(1.0), background.rgb, background.a);
+        return CatcherHit(select(CATCHER_MISS, CATCHER_MIRRORED, is_visible), WHITE, background.rgb, background.a);
     }
     let is_transparent = background.a <= 0.0;
-    let shown = select(background.rgb, vec3f(1.0), is_transparent);
-    let albedo = material_at(globals.catcher_slot).base_color;
-    let is_lit = select(vec3f(), vec3f(1.0), light > vec3f());
-    let reflected = light * albedo + (1.0 - is_lit);
-    let kind = select(CATCHER_SHADOW, CATCHER_SHADOW_ALPHA, is_transparent);
-    return CatcherHit(kind, shown * is_lit / reflected, shown * (1.0 - is_lit), 1.0);
+    let shown = select(background.rgb, WHITE, is_transparent);
+    let is_lit = select(vec3f(), WHITE, light > vec3f());
+    let reflected = light * material_at(globals.catcher_slot).base_color + (1.0 - is_lit);
+    return CatcherHit(
+        select(CATCHER_SHADOW, CATCHER_SHADOW_ALPHA, is_transparent), shown * is_lit / reflected, shown * (1.0 - is_lit), 1.0,
+    );
 }
 
 // One sample of a pixel: unidirectional path tracing with next-event estimation and multiple importance sampling.
@@ -165,7 +153,7 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
     camera.lens_radius = select(0.0, camera.lens_radius, PLAN_LENS);
     // The path's state. A camera ray counts as a mirror's: light sampling could not have drawn it, so its MIS weight is 1.
     var ray = pixel_ray(camera, pixel, globals.image_size, state);
-    var throughput = vec3f(1.0);
+    var throughput = WHITE;
     var path = PathResult();
     path.alpha = 1.0;
     var rough_bounces = 0u;
@@ -186,7 +174,7 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
         var sky = vec3f();
         // Two turns: the last vertex's shadow ray, then the path's own ray. As a loop, so that the traversal and the
         // environment's look-up are in the kernel once.
-        for (var turn = select(1u, 0u, may_sample_light()); turn < 2u; turn++) {
+        for (var turn = u32(!may_sample_light()); turn < 2u; turn++) {
             let is_shadow_ray = turn == 0u;
             if !select(is_active, shadow_ray.is_pending, is_shadow_ray) {
                 continue;
@@ -202,25 +190,19 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
             // Rays that leave a convex body miss: no traversal needed.
             var intersection = Intersection(hit, 1.0, 0u);
             if !skips_traversal {
-                var xi = 0.0;
-                if PLAN_ALPHA && !is_shadow_ray {
-                    xi = random_pair(state, OPACITY_DIMENSION + bounce).x;
-                }
-                let is_camera_ray = bounce == 0u && !is_shadow_ray;
-                intersection = intersect(along, length, is_shadow_ray, is_camera_ray, xi);
+                let xi = random_pair(state, OPACITY_DIMENSION + bounce).x;
+                intersection = intersect(along, length, is_shadow_ray, bounce == 0u && !is_shadow_ray, xi);
                 path.rays += intersection.rays;
             }
+            // The environment is looked up only where its light arrives: after an unoccluded shadow ray towards it, or after
+            // a miss. A blurred background is seen in a direction of its own.
+            var needs_sky = intersection.transmittance > 0.0 && shadow_ray.is_environment;
             if !is_shadow_ray {
                 hit = intersection.hit;
                 // More surfaces to pass than are looked at.
                 if hit.triangle == NO_HIT && intersection.transmittance == 0.0 {
                     path.cut += luminance(throughput);
                 }
-            }
-            // The environment is looked up only where its light arrives: after an unoccluded shadow ray towards it, or after
-            // a miss. A blurred background is seen in a direction of its own.
-            var needs_sky = intersection.transmittance > 0.0 && shadow_ray.is_environment;
-            if !is_shadow_ray {
                 needs_sky = hit.triangle == NO_HIT && needs_environment(bounce, was_mirror);
                 if bounce == 0u && globals.background_kind == BACKGROUND_BLURRED {
                     along.direction = blurred(along.direction, random_pair(state, FIRST_DIMENSION));
@@ -231,7 +213,7 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
             }
             // Direct light of the last vertex: `bounce` reflections, as that vertex was number `bounce` - 1.
             if is_shadow_ray {
-                let arrives = select(vec3f(1.0), sky, shadow_ray.is_environment) * intersection.transmittance;
+                let arrives = select(WHITE, sky, shadow_ray.is_environment) * intersection.transmittance;
                 add_light(&path, shadow_ray.value * arrives, bounce, shadow_ray.group);
                 shadow_ray.is_pending = false;
             }
@@ -323,13 +305,14 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
         let transmits = material_transmits(material);
         let needs_density = samples_light() && globals.strategy == STRATEGY_MIS;
         var is_lit = false;
-        var sampled_light = LightSample(vec3f(), 0.0, vec3f(), 0.0, ENVIRONMENT_GROUP);
-        if may_sample_light() && samples_light() && !is_mirrored {
+        var is_environment = false;
+        var sampled_light = LightSample();
+        if samples_light() && !is_mirrored {
             var xi = vec3f(random_pair(state, dimension + 2u), random_pair(state, dimension + 3u).x);
             let part = choose_environment(xi.x);
             xi.x = part.remapped;
-            shadow_ray.is_environment = part.is_below;
-            sampled_light = sample_light(point, part.is_below, xi);
+            is_environment = part.is_below;
+            sampled_light = sample_light(point, is_environment, xi);
             is_lit = sampled_light.density > 0.0 && (dot(point.surface.normal, sampled_light.direction) > 0.0 || transmits);
         }
         // The BSDF's value for that light and a sample of its own in one call, because both loop over the same layers.
@@ -339,26 +322,23 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
             let pair = BELOW_DIMENSION + 2u * bounce;
             numbers.below = vec3f(random_pair(state, pair), random_pair(state, pair + 1u).x);
         }
-        let light_query = MaterialLight(
-            sampled_light.direction, sampled_light.density, f32(globals.strategy == STRATEGY_MIS),
+        let scattered = material_scatter(
+            material, point.surface, layers, material_steps(is_lit, true), numbers, needs_density,
+            MaterialLight(sampled_light.direction, sampled_light.density, f32(globals.strategy == STRATEGY_MIS)),
         );
-        let steps = material_steps(is_lit, true);
-        let scattered = material_scatter(material, point.surface, layers, steps, numbers, needs_density, light_query);
         // The shadow ray is traced at the start of the next bounce, where the path's own ray needs the same code. Its value
         // is the whole contribution but for visibility and the environment's radiance.
         if may_sample_light() && any(scattered.reflected > vec3f()) {
-            shadow_ray.ray = Ray(ray_origin(point, sampled_light.direction, transmits), sampled_light.direction);
-            shadow_ray.distance = sampled_light.distance;
-            shadow_ray.value = throughput * scattered.reflected / sampled_light.density;
-            shadow_ray.value *= select(sampled_light.radiance, vec3f(1.0), shadow_ray.is_environment);
-            if PLAN_ABSORPTION && PLAN_EMITTER_SAMPLING && !shadow_ray.is_environment {
-                shadow_ray.value *= transmittance_over(
-                    medium_towards(medium, point, slot, sampled_light.direction, transmits), sampled_light.distance,
-                );
+            let along = sampled_light.direction;
+            var value = throughput * scattered.reflected / sampled_light.density;
+            value *= select(sampled_light.radiance, WHITE, is_environment);
+            if PLAN_ABSORPTION && PLAN_EMITTER_SAMPLING && !is_environment {
+                value *= transmittance_over(medium_towards(medium, point, slot, along, transmits), sampled_light.distance);
             }
-            shadow_ray.group = sampled_light.group;
-            shadow_ray.is_known_miss = is_known_miss(point, sampled_light.direction);
-            shadow_ray.is_pending = true;
+            shadow_ray = ShadowRay(
+                Ray(ray_origin(point, along, transmits), along), sampled_light.distance, value, is_environment,
+                sampled_light.group, is_known_miss(point, along), true,
+            );
         }
         // The sampled direction: the medium that it enters, and whether it can hit anything.
         var sampled = scattered.drawn;
@@ -371,18 +351,18 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
             // The catcher's mirror ray keeps its full weight, also the light that facets would block. Its light must not
             // compete with light sampling, which the catcher does not do.
             known_miss = known_miss || !any(sampled.throughput > vec3f());
-            sampled.throughput = vec3f(1.0);
+            sampled.throughput = WHITE;
             sampled.is_mirror = true;
         }
         throughput *= sampled.throughput;
         // Russian roulette by the largest throughput component. In glass the limit is low until enough bounces were rough:
         // long specular paths carry the caustics. NaN ends the path, too.
-        let strength = max(max(throughput.x, throughput.y), throughput.z);
+        let strength = max_component(throughput);
         is_active = strength > 0.0;
         var limit = 1.0;
         if PLAN_TRANSMISSION {
             limit = select(globals.roulette_floor, 1.0, rough_bounces >= ROULETTE_START);
-            rough_bounces += select(1u, 0u, sampled.is_mirror);
+            rough_bounces += u32(!sampled.is_mirror);
         }
         if bounce >= ROULETTE_START && strength < limit {
             let survival = strength / limit;
@@ -423,13 +403,18 @@ fn path_trace(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation
     for (var i = 0u; i < tile.sample_count; i++) {
         let sample = tile.first_sample + i;
         let path = trace_path(pixel, sample);
-        sums.rays_clamped += vec2f(f32(path.rays), 0.0);
+        sums.rays_clamped.x += f32(path.rays);
         if is_sound(path.radiance) {
             let y = luminance(path.radiance);
             let odd = f32(sample % 2u);
             colors.all += vec4f(path.radiance, path.alpha);
             colors.odd += odd * vec4f(path.radiance, 1.0);
-            sum_groups(index, odd);
+            for (var group = 0u; PLAN_LIGHT_GROUPS && group < globals.light_groups; group++) {
+                let light = vec4f(group_light(group), 0.0);
+                let of_group = (1u + group) * band.y + index;
+                color_sums[of_group].all += light;
+                color_sums[of_group].odd += odd * light;
+            }
             sums.luminance_squared += y * y * vec2f(1.0, odd);
             sums.kept_dropped.x += 1.0;
             sums.rays_clamped.y += path.clamped;

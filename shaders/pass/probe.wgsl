@@ -36,12 +36,9 @@ fn answer_lobe(q: u32, a: u32) {
     let normal = asked_vector(q + 10u);
     let wo = asked_vector(q + 13u);
     let drawn = lobe_sample(shape, frame, normal, wo, asked_vector(q + 16u));
-    let there = lobe_evaluate(shape, frame, normal, wo, drawn.wi);
     let given = lobe_evaluate(shape, frame, normal, wo, asked_vector(q + 19u));
     answer_vector(a, drawn.wi);
-    answer(a + 3u, drawn.weight);
-    answer(a + 4u, there.x);
-    answer(a + 5u, there.y);
+    answer_vector(a + 3u, vec3f(drawn.weight, lobe_evaluate(shape, frame, normal, wo, drawn.wi)));
     answer(a + 6u, given.x);
     answer(a + 7u, given.y);
 }
@@ -53,10 +50,9 @@ fn answer_fresnel(q: u32, a: u32) {
         share = fresnel_conductor(asked(q + 1u), asked(q + 2u), asked(q + 3u));
     }
     if questions[q] > 1u {
-        let white = vec3f(1.0);
         let film = FilmTerms(asked(q + 4u), asked(q + 5u), asked(q + 2u), vec3f(asked(q + 6u)));
         let terms = FresnelTerms(
-            select(FRESNEL_CONDUCTOR, FRESNEL_DIELECTRIC, questions[q] == 2u), white, 0.0, white, white, white, 1.0,
+            select(FRESNEL_CONDUCTOR, FRESNEL_DIELECTRIC, questions[q] == 2u), WHITE, 0.0, WHITE, WHITE, WHITE, 1.0,
             asked(q + 2u), vec3f(asked(q + 2u)), vec3f(asked(q + 3u)), 1.0, true, film,
         );
         share = fresnel(terms, asked(q + 1u)).x;
@@ -87,8 +83,7 @@ fn answer_material(q: u32, a: u32) {
     let surface = seen(q);
     let material = material_at(questions[q]);
     let layers = material_layers(material, surface);
-    let value = material_evaluate(material, surface, layers, asked_vector(q + 14u), asked(q + 17u), asked(q + 18u));
-    answer_vector(a, value);
+    answer_vector(a, material_evaluate(material, surface, layers, asked_vector(q + 14u), asked(q + 17u), asked(q + 18u)));
 }
 
 // The density with which a material draws a direction.

@@ -15,35 +15,12 @@ const RELATIVE_ERROR = 6e-7f;
 const INVERSE_MAX = 1e18f;
 
 // -0 is positive, as in the choice of near and far planes.
-fn bounded_inverse(x: f32) -> f32 {
-    let size = min(1.0 / max(abs(x), 1e-18), INVERSE_MAX);
-    return select(size, -size, x < 0.0);
+fn bounded_inverse(x: vec3f) -> vec3f {
+    let size = min(1.0 / max(abs(x), vec3f(1e-18)), vec3f(INVERSE_MAX));
+    return select(size, -size, x < vec3f());
 }
 
-// Tests four children of a node. Returns the hit ones as bits of the node's hit mask.
-fn intersect_children(
-    meta_bytes: u32, low: vec3u, high: vec3u, scale: vec3f, shift: vec3f, margin: vec3f,
-    octant_inverse: u32, t_max: f32,
-) -> u32 {
-    let early = shift - margin;
-    let late = shift + margin;
-    let near = max(
-        max(vec4f(unpack4xU8(low[0])) * scale.x + early.x, vec4f(unpack4xU8(low[1])) * scale.y + early.y),
-        max(vec4f(unpack4xU8(low[2])) * scale.z + early.z, vec4f()),
-    );
-    let far = min(
-        min(vec4f(unpack4xU8(high[0])) * scale.x + late.x, vec4f(unpack4xU8(high[1])) * scale.y + late.y),
-        min(vec4f(unpack4xU8(high[2])) * scale.z + late.z, vec4f(t_max)),
-    );
-    // Inner children have bits 3 and 4 of their meta byte set; their slot is put in the ray's order.
-    let is_inner = (meta_bytes & (meta_bytes << 1u)) & 0x10101010u;
-    let inner_mask = (is_inner >> 4u) * 0xffu;
-    let bit_index = unpack4xU8((meta_bytes ^ (octant_inverse & inner_mask)) & 0x1f1f1f1fu);
-    let child_bits = unpack4xU8((meta_bytes >> 5u) & 0x07070707u);
-    let hit_bits = select(vec4u(), child_bits << bit_index, near <= far * FAR_MARGIN);
-    return hit_bits.x | hit_bits.y | hit_bits.z | hit_bits.w;
-}
-
+// The hit children of a node as bits of its hit mask.
 fn intersect_node(node: u32, ray: RayFrame, inverse: vec3f, octant_inverse: u32, t_max: f32) -> u32 {
     let first = node_words(node * 5u);
     let links = node_words(node * 5u + 1u);
@@ -60,11 +37,27 @@ fn intersect_node(node: u32, ray: RayFrame, inverse: vec3f, octant_inverse: u32,
     let sides_x = select(x, x.zwxy, backward.x);
     let sides_y = select(y, y.zwxy, backward.y);
     let sides_z = select(z, z.zwxy, backward.z);
+    let early = shift - margin;
+    let late = shift + margin;
     var hit_bits = 0u;
     for (var half = 0u; half < 2u; half++) {
-        let low = vec3u(sides_x[half], sides_y[half], sides_z[half]);
-        let high = vec3u(sides_x[half + 2u], sides_y[half + 2u], sides_z[half + 2u]);
-        hit_bits |= intersect_children(links[half + 2u], low, high, scale, shift, margin, octant_inverse, t_max);
+        let back = half + 2u;
+        let near = max(
+            max(vec4f(unpack4xU8(sides_x[half])) * scale.x + early.x, vec4f(unpack4xU8(sides_y[half])) * scale.y + early.y),
+            max(vec4f(unpack4xU8(sides_z[half])) * scale.z + early.z, vec4f()),
+        );
+        let far = min(
+            min(vec4f(unpack4xU8(sides_x[back])) * scale.x + late.x, vec4f(unpack4xU8(sides_y[back])) * scale.y + late.y),
+            min(vec4f(unpack4xU8(sides_z[back])) * scale.z + late.z, vec4f(t_max)),
+        );
+        // Inner children have bits 3 and 4 of their meta byte set; their slot is put in the ray's order.
+        let meta_bytes = links[back];
+        let is_inner = (meta_bytes & (meta_bytes << 1u)) & 0x10101010u;
+        let inner_mask = (is_inner >> 4u) * 0xffu;
+        let bit_index = unpack4xU8((meta_bytes ^ (octant_inverse & inner_mask)) & 0x1f1f1f1fu);
+        let child_bits = unpack4xU8((meta_bytes >> 5u) & 0x07070707u);
+        let hits = select(vec4u(), child_bits << bit_index, near <= far * FAR_MARGIN);
+        hit_bits |= hits.x | hits.y | hits.z | hits.w;
     }
     return hit_bits;
 }
@@ -76,7 +69,7 @@ fn trace(origin: vec3f, direction: vec3f, t_max: f32, any_hit: bool) -> Hit {
         return nearest;
     }
     let ray = ray_frame(origin, direction);
-    let inverse = vec3f(bounded_inverse(direction.x), bounded_inverse(direction.y), bounded_inverse(direction.z));
+    let inverse = bounded_inverse(direction);
     let octant_inverse = select(0x04040404u, 0u, direction.x < 0.0)
         | select(0x02020202u, 0u, direction.y < 0.0)
         | select(0x01010101u, 0u, direction.z < 0.0);
@@ -117,11 +110,11 @@ fn trace(origin: vec3f, direction: vec3f, t_max: f32, any_hit: bool) -> Hit {
             stack[stack_height] = node_group;
             stack_height += 1u;
         }
-        let slot = (child - 24u) ^ (octant_inverse & 0xffu);
-        let node = children + countOneBits(hits & ~(0xffffffffu << slot));
+        let node = children + countOneBits(hits & ~(0xffffffffu << ((child - 24u) ^ (octant_inverse & 0xffu))));
         let hit_mask = intersect_node(node, ray, inverse, octant_inverse, nearest.t);
-        node_group = vec2u(node_words(node * 5u + 1u).x, (hit_mask & 0xff000000u) | (node_words(node * 5u).w >> 24u));
-        triangle_group = vec2u(node_words(node * 5u + 1u).y, hit_mask & 0x00ffffffu);
+        let links = node_words(node * 5u + 1u);
+        node_group = vec2u(links.x, (hit_mask & 0xff000000u) | (node_words(node * 5u).w >> 24u));
+        triangle_group = vec2u(links.y, hit_mask & 0x00ffffffu);
     }
     return nearest;
 }

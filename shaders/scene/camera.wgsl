@@ -31,8 +31,7 @@ fn filter_offset(filter_kind: u32, xi: vec2f) -> vec2f {
     if filter_kind == FILTER_BOX {
         return xi - 0.5;
     }
-    let radius = GAUSSIAN_SIGMA * safe_sqrt(-2.0 * log(1.0 - xi.x * GAUSSIAN_KEPT));
-    return radius * unit_circle(xi.y);
+    return GAUSSIAN_SIGMA * safe_sqrt(-2.0 * log(1.0 - xi.x * GAUSSIAN_KEPT)) * unit_circle(xi.y);
 }
 
 fn pixel_ray(camera: Camera, pixel: vec2u, image_size: vec2u, state: RandomState) -> Ray {

@@ -15,10 +15,6 @@ fn catcher_node(along: f32, side: u32) -> CatcherNode {
     return CatcherNode(u32(low), place - low);
 }
 
-fn catcher_radiance(table: u32, side: u32, row: u32, column: u32) -> vec3f {
-    return table_numbers(table, 1u + min(row, side - 1u) * side + min(column, side - 1u)).xyz;
-}
-
 // Radiance of a white diffuse plane at a position, lit by all lights without occluders.
 fn catcher_light(table: u32, position: vec3f) -> vec3f {
     let side = u32(table_numbers(table, 0u).x);
@@ -30,8 +26,8 @@ fn catcher_light(table: u32, position: vec3f) -> vec3f {
         let is_right = (node & 1u) != 0u;
         let is_lower = node > 1u;
         let share = select(1.0 - across.behind, across.behind, is_right) * select(1.0 - down.behind, down.behind, is_lower);
-        let row = down.number + u32(is_lower);
-        sum += catcher_radiance(table, side, row, across.number + u32(is_right)) * share;
+        let row = min(down.number + u32(is_lower), side - 1u);
+        sum += table_numbers(table, 1u + row * side + min(across.number + u32(is_right), side - 1u)).xyz * share;
     }
     return sum;
 }

@@ -5,22 +5,6 @@
 #import "scene/inversion"
 #import "scene/layout"
 
-// A cell of a row of the distribution, or a row.
-struct EnvironmentCell {
-    // The first of the numbers that draw it, and the number after the last.
-    bounds: vec2u,
-    // First and last entry that numbers of this guide slot may select.
-    guide: vec2u,
-    // Density per steradian.
-    density: f32,
-}
-
-// The cells lie row by row, the rows after them.
-fn environment_cell(index: u32) -> EnvironmentCell {
-    let words = texel_at(environment_cells, index);
-    return EnvironmentCell(words.xy, vec2u(words.z & 0xffffu, words.z >> 16u), bitcast<f32>(words.w));
-}
-
 struct EnvironmentSample {
     // Direction in the map's frame.
     direction: vec3f,
@@ -36,30 +20,17 @@ fn environment_local_from_world(direction_world: vec3f, rotation: vec2f) -> vec3
 }
 
 fn environment_world_from_local(direction_local: vec3f, rotation: vec2f) -> vec3f {
-    let d = direction_local;
-    return vec3f(d.x * rotation.x + d.z * rotation.y, d.y, d.z * rotation.x - d.x * rotation.y);
+    return environment_local_from_world(direction_local, vec2f(rotation.x, -rotation.y));
 }
 
 fn environment_uv(direction: vec3f) -> vec2f {
     // atan2 instead of acos: near the poles y rounds to 1, and only x and z determine the angle.
     let horizontal = sqrt(direction.x * direction.x + direction.z * direction.z);
-    let v = arctan2(horizontal, direction.y) / PI;
     // The null vector has no angle.
-    let z = select(direction.z, -1.0, !(horizontal > 0.0));
-    let turns = arctan2(direction.x, -z) / (2.0 * PI);
+    let turns = arctan2(direction.x, -select(direction.z, -1.0, !(horizontal > 0.0))) / (2.0 * PI);
     let u = select(turns, turns + 1.0, turns < 0.0);
     // A tiny negative angle plus one turn rounds to a whole turn.
-    return vec2f(select(0.0, u, u < 1.0), saturate(v));
-}
-
-fn environment_direction(uv: vec2f) -> vec3f {
-    let polar = unit_circle(0.5 * uv.y);
-    return environment_direction_from_angles(uv.x, polar.x, polar.y);
-}
-
-fn environment_direction_from_angles(u: f32, cos_polar: f32, sin_polar: f32) -> vec3f {
-    let azimuth = unit_circle(u - 0.5);
-    return vec3f(-(azimuth.y * sin_polar), cos_polar, azimuth.x * sin_polar);
+    return vec2f(select(0.0, u, u < 1.0), saturate(arctan2(horizontal, direction.y) / PI));
 }
 
 // Radiance from a direction: bilinear, wrapping in u, clamped at the poles in v.
@@ -70,17 +41,11 @@ fn environment_radiance(direction_local: vec3f) -> vec3f {
     let share = place - corner;
     let columns = (vec2i(i32(corner.x), i32(corner.x) + 1) + size.x) % size.x;
     let rows = clamp(vec2i(i32(corner.y), i32(corner.y) + 1), vec2i(0), vec2i(size.y - 1));
-    let upper = mix(
-        textureLoad(environment_map, vec2i(columns.x, rows.x), 0).rgb,
-        textureLoad(environment_map, vec2i(columns.y, rows.x), 0).rgb,
-        share.x,
-    );
-    let lower = mix(
-        textureLoad(environment_map, vec2i(columns.x, rows.y), 0).rgb,
-        textureLoad(environment_map, vec2i(columns.y, rows.y), 0).rgb,
-        share.x,
-    );
-    return mix(upper, lower, share.y);
+    let left_top = textureLoad(environment_map, vec2i(columns.x, rows.x), 0);
+    let right_top = textureLoad(environment_map, vec2i(columns.y, rows.x), 0);
+    let left_bottom = textureLoad(environment_map, vec2i(columns.x, rows.y), 0);
+    let right_bottom = textureLoad(environment_map, vec2i(columns.y, rows.y), 0);
+    return mix(mix(left_top, right_top, share.x), mix(left_bottom, right_bottom, share.x), share.y).rgb;
 }
 
 // Samples a direction and its density. xi.y selects the row of a cell, xi.x the column; xi.z supplies the bits that they
@@ -93,10 +58,10 @@ fn environment_sample(xi: vec3f, cells_size: vec2u) -> EnvironmentSample {
     // A row, then one of its cells.
     for (var step = 0u; step < 2u; step++) {
         let is_row = step == 0u;
-        let first = select(chosen.y, cells_size.y, is_row) * cells_size.x;
-        let number = draw_number(select(xi.x, xi.y, is_row));
+        // A random number in [0, 1) as one of the 2^24.
+        let number = u32(select(xi.x, xi.y, is_row) * f32(1u << DRAW_BITS));
         let count = select(cells_size.x, cells_size.y, is_row);
-        let drawn = environment_draw(first, count, number);
+        let drawn = environment_draw(select(chosen.y, cells_size.y, is_row) * cells_size.x, count, number);
         if is_row {
             chosen.y = drawn.index;
             place.y = place_in(drawn.bounds, number, fract(jitters));
@@ -117,23 +82,24 @@ struct DrawnCell {
 
 // The entry that a number draws of `count`, which begin with cell `first`.
 fn environment_draw(first: u32, count: u32, number: u32) -> DrawnCell {
-    let guide = environment_cell(first + (number >> slot_shift(count))).guide;
-    var low = guide.x;
-    var high = guide.y;
+    // The slot of a number is the number without its last bits.
+    let guide = texel_at(environment_cells, first + (number >> (DRAW_BITS - firstLeadingBit(count)))).z;
+    var low = guide & 0xffffu;
+    var high = guide >> 16u;
     var middle = (low + high) / 2u;
-    var cell = environment_cell(first + middle);
+    var cell = texel_at(environment_cells, first + middle);
     loop {
-        let is_later = number >= cell.bounds.y && middle < high;
-        let is_before = number < cell.bounds.x && middle > low;
+        let is_later = number >= cell.y && middle < high;
+        let is_before = number < cell.x && middle > low;
         if !(is_later || is_before) {
             break;
         }
         low = select(low, middle + 1u, is_later);
         high = select(high, middle - 1u, is_before);
         middle = (low + high) / 2u;
-        cell = environment_cell(first + middle);
+        cell = texel_at(environment_cells, first + middle);
     }
-    return DrawnCell(middle, cell.bounds, cell.density);
+    return DrawnCell(middle, cell.xy, bitcast<f32>(cell.w));
 }
 
 // The direction at a place (in [0, 1]^2, from the top left) of a cell, uniform in solid angle.
@@ -149,11 +115,12 @@ fn environment_direction_in_cell(cell: vec2u, place: vec2f, cells_size: vec2u) -
     let far = unit_circle(turns_per_row * (row_from_pole + 1.0)).y;
     let s = near * near + across * (far * far - near * near);
     let cos_from_pole = 1.0 - 2.0 * s;
-    let sin_polar = 2.0 * sqrt(max(0.0, s * (1.0 - s)));
-    return environment_direction_from_angles(u, select(cos_from_pole, -cos_from_pole, is_south), sin_polar);
+    let sin_polar = 2.0 * safe_sqrt(s * (1.0 - s));
+    let azimuth = unit_circle(u - 0.5);
+    return vec3f(-(azimuth.y * sin_polar), select(cos_from_pole, -cos_from_pole, is_south), azimuth.x * sin_polar);
 }
 
 // The density, per steradian, with which environment_sample draws a direction.
 fn environment_density(direction_local: vec3f, cells_size: vec2u) -> f32 {
-    return environment_cell(grid_place(environment_uv(direction_local), cells_size).index).density;
+    return bitcast<f32>(texel_at(environment_cells, grid_place(environment_uv(direction_local), cells_size).index).w);
 }

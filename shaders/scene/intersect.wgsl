@@ -50,11 +50,9 @@ fn triangle_normal(corners: mat3x3f) -> vec3f {
 fn intersect_triangle(ray: RayFrame, corners: mat3x3f, t_max: f32) -> vec3f {
     // The projected corners, one per lane: all three by the same instructions.
     let axes = transpose(corners);
-    let x = axes[0] - ray.origin.x;
-    let y = axes[1] - ray.origin.y;
-    let z = axes[2] - ray.origin.z;
-    let px = x * ray.axis_x.x + y * ray.axis_x.y + z * ray.axis_x.z;
-    let py = x * ray.axis_y.x + y * ray.axis_y.y + z * ray.axis_y.z;
+    let relative = mat3x3f(axes[0] - ray.origin.x, axes[1] - ray.origin.y, axes[2] - ray.origin.z);
+    let px = relative * ray.axis_x;
+    let py = relative * ray.axis_y;
     // An edge's area with its corners in a canonical order: the same number for both triangles that share it, whether or not
     // a driver fuses the products.
     let is_turned = (px.zxy > px.yzx) | ((px.zxy == px.yzx) & (py.zxy > py.yzx));

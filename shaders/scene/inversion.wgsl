@@ -1,16 +1,6 @@
 // Samples discrete weights by inverting their cumulative sum. Twin of src/scene/inversion.rs, which explains the method.
 #import "scene/constants"
 
-// The slot of a number among `count` entries is the number without so many of its last bits.
-fn slot_shift(count: u32) -> u32 {
-    return DRAW_BITS - firstLeadingBit(count);
-}
-
-// A random number in [0, 1) as one of the 2^24.
-fn draw_number(xi: f32) -> u32 {
-    return u32(xi * f32(1u << DRAW_BITS));
-}
-
 // Relative position in [0, 1] of a number within the range that selects an entry. bounds: first number of the range, and the
 // number after its last. jitter is added to the number.
 fn place_in(bounds: vec2u, number: u32, jitter: f32) -> f32 {

@@ -4,8 +4,6 @@
 #import "scene/structures"
 #import "scene/texels"
 
-// Bits of a material's flags: vertex attributes, whether the reflection's weight and tint spare metals,
-
 // A triangle to intersect: corner positions as bits, with the corner's vertex index in w.
 struct Triangle {
     corners: array<vec4u, 3>,
@@ -43,6 +41,9 @@ struct Vertex {
 // From here on, arrays with elements at texel_place. First the materials' tables, four numbers per texel as bits
 // (src/optics/table.rs).
 @group(0) @binding(5) var table_texels: texture_2d_array<u32>;
+// The cells of the distribution row by row, the rows after them. Of each: the first of the numbers that draw it and the number
+// after the last; first and last entry that numbers of this guide slot may select, in 16 bits each; the density per
+// steradian as bits.
 @group(0) @binding(6) var environment_cells: texture_2d_array<u32>;
 @group(0) @binding(7) var light_cells: texture_2d_array<u32>;
 @group(0) @binding(8) var triangle_slots: texture_2d_array<u32>;

@@ -15,32 +15,19 @@ struct LightSample {
     group: u32,
 }
 
-// An entry of the alias table over the triangles that emit.
-struct LightCell {
-    threshold: f32,
-    alias_index: u32,
-    triangle: u32,
-}
-
-fn light_cell(index: u32) -> LightCell {
-    let words = texel_at(light_cells, index);
-    return LightCell(bitcast<f32>(words.x), words.y, words.z);
-}
-
 // Samples a position on an emitting triangle for `origin`. xi.xy select an entry of the table and the position, xi.z the
 // entry or its alias. There must be such a triangle. The ray may start up to origin_error off `origin`.
 fn light_sample(origin: vec3f, origin_error: f32, xi: vec3f) -> LightSample {
     let drawn = grid_place(xi.xy, globals.light_cells_size);
-    let cell = light_cell(drawn.index);
-    let chosen = select(cell.alias_index, drawn.index, xi.z < cell.threshold);
-    let index = light_cell(chosen).triangle;
+    // An entry of the alias table: the threshold as bits, the alias and the triangle.
+    let cell = texel_at(light_cells, drawn.index);
+    let index = texel_at(light_cells, select(cell.y, drawn.index, xi.z < bitcast<f32>(cell.x))).z;
     let triangle = triangle_at(index);
     let at = corners(triangle);
     // Uniform in area.
     let s = sqrt(drawn.place.x);
     let weights = vec3f(1.0 - s, s * (1.0 - drawn.place.y), s * drawn.place.y);
-    let place = at * weights;
-    let towards = place - origin;
+    let towards = at * weights - origin;
     let distance = length(towards);
     let direction = normalize_or(towards, vec3f(0.0, 1.0, 0.0));
     let normal = normalize_or(triangle_normal(at), direction);
@@ -61,7 +48,7 @@ fn light_sample(origin: vec3f, origin_error: f32, xi: vec3f) -> LightSample {
     if PLAN_COAT_ABSORPTION {
         var coated = material;
         if PLAN_COAT_TEXTURES {
-            coated = textured_material(material, uvs, vec3f(1.0));
+            coated = textured_material(material, uvs, WHITE);
         }
         radiance *= coat_over_emission(coated, facing, facing < 0.0);
     }
@@ -136,6 +123,5 @@ fn profile_share(material: Material, direction: vec3f) -> f32 {
 
 // Density per steradian of light_sample for a position on a material of this luminance, at this cosine and distance.
 fn light_density(light_luminance: f32, cosine: f32, distance: f32) -> f32 {
-    let per_area = globals.density_per_luminance * light_luminance;
-    return per_area * distance * distance / max(cosine, COSINE_MIN);
+    return globals.density_per_luminance * light_luminance * distance * distance / max(cosine, COSINE_MIN);
 }

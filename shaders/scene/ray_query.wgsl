@@ -13,8 +13,7 @@ const EXTENT_MAX = 1e36f;
 fn trace(origin: vec3f, direction: vec3f, t_max: f32, any_hit: bool) -> Hit {
     let nothing = Hit(t_max, NO_HIT, 0.0, 0.0);
     // False for NaN, too.
-    let is_sound = dot(abs(origin) + abs(direction), vec3f(1.0)) < EXTENT_MAX;
-    if !is_sound || globals.node_count == 0u {
+    if !(dot(abs(origin) + abs(direction), vec3f(1.0)) < EXTENT_MAX) || globals.node_count == 0u {
         return nothing;
     }
     let flags = RAY_FLAG_FORCE_OPAQUE | select(0u, RAY_FLAG_TERMINATE_ON_FIRST_HIT, any_hit);

@@ -18,8 +18,7 @@ struct SurfacePoint {
 
 fn bent_normal(shading: vec3f, wo: vec3f) -> vec3f {
     let lean = dot(shading, wo);
-    let bent = normalize_or(shading + wo * (VIEW_COSINE_MIN - lean), wo);
-    return select(shading, bent, lean < VIEW_COSINE_MIN);
+    return select(shading, normalize_or(shading + wo * (VIEW_COSINE_MIN - lean), wo), lean < VIEW_COSINE_MIN);
 }
 
 // The normal bent so far that the mirror direction about it is above the geometric surface.
@@ -55,18 +54,6 @@ fn hit_weights(hit: Hit) -> vec3f {
     return vec3f(1.0 - hit.u - hit.v, hit.u, hit.v);
 }
 
-// Origin of a ray that continues through a surface.
-fn passed_origin(hit: Hit, direction: vec3f) -> vec3f {
-    let place = hit_place(hit, direction);
-    return place.position - place.normal * place.error;
-}
-
-fn surface_at(hit: Hit, direction: vec3f) -> SurfacePoint {
-    let slot = slot_at(hit.triangle);
-    return surface_of(hit, direction, slot, material_at(slot));
-}
-
-// The same for a known material.
 fn surface_of(hit: Hit, direction: vec3f, slot: u32, material: Material) -> SurfacePoint {
     let triangle = triangle_at(hit.triangle);
     let weights = hit_weights(hit);
@@ -83,7 +70,8 @@ fn surface_of(hit: Hit, direction: vec3f, slot: u32, material: Material) -> Surf
     let side = select(1.0, -1.0, dot(smoothed, normal) < 0.0);
     let smooth_normal = bent_normal(side * smoothed, wo);
     var uvs = Uvs();
-    if looks_up_textures() {
+    if PLAN_COLOR_TEXTURES || PLAN_ROUGHNESS_TEXTURES || PLAN_EMISSION_TEXTURES || PLAN_NORMAL_MAPS
+        || PLAN_COAT_TEXTURES || PLAN_COAT_NORMALS || PLAN_FILM_TEXTURES || PLAN_FUZZ_TEXTURES {
         uvs = hit_uvs(hit, material);
     }
     let tangent = vec4f(
@@ -121,9 +109,8 @@ fn surface_of(hit: Hit, direction: vec3f, slot: u32, material: Material) -> Surf
         rise = select(vec3f(), rise, is_round);
     }
     let surface = Surface(frame, horizon, wo, coat_normal, place.is_back);
-    var color = vec3f(1.0);
-    let may_be_colored = PLAN_COLOR_TEXTURES || PLAN_VERTEX_COLORS;
-    if may_be_colored && has_flag(material, VERTEX_BASE | VERTEX_EMISSION) {
+    var color = WHITE;
+    if (PLAN_COLOR_TEXTURES || PLAN_VERTEX_COLORS) && has_flag(material, VERTEX_BASE | VERTEX_EMISSION) {
         color = mat3x3f(corner_color(a).xyz, corner_color(b).xyz, corner_color(c).xyz) * weights;
     }
     return SurfacePoint(surface, place.position, place.error, slot, uvs, color, normal, rise);
@@ -147,19 +134,13 @@ fn vertex_side(vertex: Vertex) -> f32 {
     return select(1.0, -1.0, (vertex.blue_side >> 31u) == 0u);
 }
 
-fn looks_up_textures() -> bool {
-    return PLAN_COLOR_TEXTURES || PLAN_ROUGHNESS_TEXTURES || PLAN_EMISSION_TEXTURES || PLAN_NORMAL_MAPS
-        || PLAN_COAT_TEXTURES || PLAN_COAT_NORMALS || PLAN_FILM_TEXTURES || PLAN_FUZZ_TEXTURES;
-}
-
 fn hit_uvs(hit: Hit, material: Material) -> Uvs {
     return uvs_at(triangle_at(hit.triangle), hit_weights(hit), has_flag(material, HAS_BOX));
 }
 
 // Opacity at a hit, in [0, 1].
 fn hit_opacity(hit: Hit) -> f32 {
-    let slot = slot_at(hit.triangle);
-    let material = material_at(slot);
+    let material = material_at(slot_at(hit.triangle));
     if !material_has_holes(material) {
         return 1.0;
     }

@@ -31,17 +31,12 @@ fn texture_record(index: u32) -> TextureRecord {
     );
 }
 
-fn texture_word(index: u32) -> u32 {
-    return texel_at(texture_words, index).x;
-}
-
 // Value of a texture use: linear RGB and alpha; one channel is repeated four times.
 fn texture_lookup(index: u32, uvs: Uvs) -> vec4f {
     let record = texture_record(index);
     let found = filtered(record, uvs);
     let channel = (record.flags >> CHANNEL_SHIFT) & 7u;
-    let chosen = select(found, vec4f(found[max(channel, 1u) - 1u]), channel != 0u);
-    return chosen * record.scale + record.offset;
+    return select(found, vec4f(found[max(channel, 1u) - 1u]), channel != 0u) * record.scale + record.offset;
 }
 
 // Filtered texture map: linear RGB and alpha.
@@ -109,14 +104,13 @@ fn texel(record: TextureRecord, column: u32, row: u32) -> vec4f {
     let place = row * record.width + column;
     let is_fine = (record.flags & IS_FINE) != 0u;
     let first = record.first_texel + select(place, 2u * place, is_fine);
-    let word = texture_word(first);
+    let word = texel_at(texture_words, first).x;
     if is_fine {
-        return vec4f(unpack2x16unorm(word), unpack2x16unorm(texture_word(first + 1u)));
+        return vec4f(unpack2x16unorm(word), unpack2x16unorm(texel_at(texture_words, first + 1u).x));
     }
     var color = unpack4x8unorm(word);
-    let curved = select(0u, 3u, (record.flags & IS_SRGB) != 0u);
-    for (var channel = 0u; channel < curved; channel++) {
-        let linear = bitcast<f32>(texture_word((word >> (8u * channel)) & 0xffu));
+    for (var channel = 0u; channel < select(0u, 3u, (record.flags & IS_SRGB) != 0u); channel++) {
+        let linear = bitcast<f32>(texel_at(texture_words, (word >> (8u * channel)) & 0xffu).x);
         color = select(color, vec4f(linear), vec4<bool>(channel == 0u, channel == 1u, channel == 2u, false));
     }
     return color;
@@ -133,7 +127,7 @@ fn textured_material(material: Material, uvs: Uvs, vertex_color: vec3f) -> Mater
     }
     // A map with both roughness and metalness is looked up once.
     let has_both = material.metalness_texture == material.roughness_texture;
-    let planned = planned_textures() - select(0u, 1u << TEXTURE_METALNESS, PLAN_ROUGHNESS_TEXTURES && has_both);
+    let planned = planned_textures() - (u32(PLAN_ROUGHNESS_TEXTURES && has_both) << TEXTURE_METALNESS);
     var rough = material.texture_roughness;
     // A loop, so that the look-up's code is there once; over the set bits, because drivers unroll a loop of known length.
     for (var wanted = planned; wanted != 0u; wanted &= wanted - 1u) {
@@ -209,7 +203,7 @@ fn vertex_factors(material: Material, triangle: Triangle, weights: vec3f) -> vec
         indices = indices.yzx;
         weight = vec3f(weight.yz, 0.0);
     }
-    let color = select(vec3f(1.0), sum.xyz, has_flag(material, VERTEX_EMISSION));
+    let color = select(WHITE, sum.xyz, has_flag(material, VERTEX_EMISSION));
     return vec4f(color, select(1.0, sum.w, has_flag(material, VERTEX_OPACITY)));
 }
 

@@ -36,7 +36,7 @@ fn intersect(
             return intersection;
         }
         // Before the opacity, which reads the same triangle: drivers load it once.
-        let passed = passed_origin(hit, ray.direction);
+        let place = hit_place(hit, ray.direction);
         let is_hidden = is_camera_ray && slot_at(hit.triangle) >= globals.first_hidden_slot;
         let opacity = select(hit_opacity(hit), 0.0, is_hidden);
         distance += hit.t;
@@ -52,7 +52,7 @@ fn intersect(
         }
         // Uniform again, given that the surface did not stop the ray.
         xi = (xi - opacity) / max(1.0 - opacity, 1e-20);
-        origin = passed;
+        origin = place.position - place.normal * place.error;
     }
     intersection.transmittance = 0.0;
     return intersection;

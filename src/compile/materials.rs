@@ -10,8 +10,8 @@ use crate::optics::layer::coat::{coat_shape, inner_reflection};
 use crate::optics::layer::fuzz::FUZZ_ROUGHNESS_MIN;
 use crate::optics::lobe::{Lobe, Width, is_mirror};
 use crate::optics::material::{
-    COAT_ABSORBS, COAT_IS_GGX, COATS_BASE, COMPENSATES, HAS_BOX, HOLDS_INTEGRALS, MATCHED_NODES, Material, NO_TEXTURE,
-    OVER_AZIMUTH, SPARES_METAL, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY, WEIGHS_INDEX, coat_blur,
+    COAT_ABSORBS, COAT_IS_GGX, COATS_BASE, COMPENSATES, HAS_BOX, HOLDS_FILM, HOLDS_INTEGRALS, MATCHED_NODES, Material,
+    NO_TEXTURE, OVER_AZIMUTH, SPARES_METAL, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY, WEIGHS_INDEX, coat_blur,
 };
 use crate::optics::scattering::scattering_table;
 use crate::optics::table::{append_table, table_lookup};
@@ -159,6 +159,11 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
     let is_of_one_roughness = !material.has_texture(&[On::Roughness]) && !material.has_varied_blur();
     if material.anisotropy != 0.0 && settings.lobe.is_anisotropic() && is_of_one_roughness {
         material.has_rough_tables |= OVER_AZIMUTH;
+    }
+    let has_index = [Fresnel::Schlick as u32, Fresnel::Dielectric as u32].contains(&material.fresnel);
+    let is_varied = material.has_texture(On::OF_FILM) || material.has_coated_table();
+    if has_film && material.holds_integrals() && has_index && !is_varied {
+        material.has_rough_tables |= HOLDS_FILM;
     }
     // Schlick's reflectance head-on may be tinted up to 1; the others are 1 at grazing angles already.
     let is_schlick = material.fresnel == Fresnel::Schlick as u32;
@@ -471,7 +476,7 @@ fn albedo_key(material: &Material<f32>, curve_table: &[f32], is_inside: bool) ->
         ior: material.ior,
         reflecting_ior: material.reflecting_ior,
         k: material.k,
-        roughness: if material.has_rough_tables == HOLDS_INTEGRALS {
+        roughness: if is_rough && !material.is_over_azimuth() {
             0.0
         } else {
             material.roughness

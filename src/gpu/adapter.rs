@@ -94,13 +94,15 @@ impl GpuAdapter {
     fn of_kind(kind: AdapterKind) -> Vec<Self> {
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
         let wanted = |backends| {
-            let adapters = block_on(instance.enumerate_adapters(backends)).into_iter();
-            let found = adapters.map(|adapter| Self {
-                info: adapter.get_info(),
-                adapter,
-            });
-            let fits = |adapter: &Self| [AdapterKind::Any, AdapterKind::of(adapter.is_software())].contains(&kind);
-            let mut found: Vec<_> = found.filter(fits).collect();
+            let found = block_on(instance.enumerate_adapters(backends))
+                .into_iter()
+                .map(|adapter| Self {
+                    info: adapter.get_info(),
+                    adapter,
+                });
+            let mut found: Vec<_> = found
+                .filter(|adapter| [AdapterKind::Any, AdapterKind::of(adapter.is_software())].contains(&kind))
+                .collect();
             found.sort_by_key(|adapter| rank(&adapter.info));
             found
         };

@@ -1,8 +1,7 @@
 //! Arrays on the GPU, uploaded in parts. In a storage buffer; or in a texture, if WebGPU's eight storage buffers per stage
 //! or its 128 MiB per binding do not suffice, or if kernels compile faster with texels.
 
-use std::borrow::Cow;
-use std::ops::Range;
+use std::{borrow::Cow, ops::Range};
 
 use bytemuck::Pod;
 
@@ -90,8 +89,11 @@ pub fn write_buffer<T: Pod>(
     values: &Values<'_, T>,
 ) -> Result<(), GpuError> {
     values.write(gpu, |first, part| {
-        let offset = ((place + first) * size_of::<T>()) as u64;
-        gpu.queue.write_buffer(buffer, offset, bytemuck::cast_slice(part));
+        gpu.queue.write_buffer(
+            buffer,
+            ((place + first) * size_of::<T>()) as u64,
+            bytemuck::cast_slice(part),
+        );
     })
 }
 
@@ -126,11 +128,11 @@ pub fn empty_texture<T: Pod>(gpu: &GpuDevice, what: &'static str, count: usize) 
     let rows = texels.div_ceil(TEXEL_ROW);
     let is_opengl = gpu.info.backend == wgpu::Backend::Gl;
     let size = [texels.min(TEXEL_ROW), rows.min(LAYER_ROWS), layers(rows, is_opengl)];
-    let texture = gpu.texture(what, size.map(|side| side as u32), format);
-    texture.create_view(&wgpu::TextureViewDescriptor {
-        dimension: Some(wgpu::TextureViewDimension::D2Array),
-        ..Default::default()
-    })
+    gpu.texture(what, size.map(|side| side as u32), format)
+        .create_view(&wgpu::TextureViewDescriptor {
+            dimension: Some(wgpu::TextureViewDimension::D2Array),
+            ..Default::default()
+        })
 }
 
 /// Number of layers for a number of rows. In OpenGL, wgpu takes a single-layer texture for one without layers, and six
@@ -153,12 +155,10 @@ pub fn write_texture<T: Pod>(
         let mut texel = (place + first) * size_of::<T>() / bytes_each;
         let mut rest: &[u8] = bytemuck::cast_slice(part);
         while !rest.is_empty() {
-            let in_row = TEXEL_ROW - texel % TEXEL_ROW;
-            let (line, after) = rest.split_at(rest.len().min(in_row * bytes_each));
+            let (line, after) = rest.split_at(rest.len().min((TEXEL_ROW - texel % TEXEL_ROW) * bytes_each));
             let row = texel / TEXEL_ROW;
             let place = [texel % TEXEL_ROW, row % LAYER_ROWS, row / LAYER_ROWS].map(|place| place as u32);
-            let width = (line.len() / bytes_each) as u32;
-            gpu.write_texture(texture.texture(), place, [width, 1], line);
+            gpu.write_texture(texture.texture(), place, [(line.len() / bytes_each) as u32, 1], line);
             (texel, rest) = (texel + line.len() / bytes_each, after);
         }
     })

@@ -71,8 +71,7 @@ impl Budget {
         } else {
             self.last_rate
         };
-        let rate = self.last_rate.min(mean_rate);
-        (SHARE * rate * left.min(self.longest).as_secs_f64()).min(GROWTH * self.last)
+        (SHARE * self.last_rate.min(mean_rate) * left.min(self.longest).as_secs_f64()).min(GROWTH * self.last)
     }
 
     /// Least samples per pixel of a pass if so many pixel samples are affordable, after `done` samples per pixel. The host's

@@ -59,13 +59,15 @@ pub fn layout(
     name: &str,
     bindings: impl IntoIterator<Item = (u32, wgpu::BindingType)>,
 ) -> wgpu::BindGroupLayout {
-    let entry = |(binding, ty)| wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility: wgpu::ShaderStages::COMPUTE,
-        ty,
-        count: None,
-    };
-    let entries: Vec<_> = bindings.into_iter().map(entry).collect();
+    let entries: Vec<_> = bindings
+        .into_iter()
+        .map(|(binding, ty)| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: wgpu::ShaderStages::COMPUTE,
+            ty,
+            count: None,
+        })
+        .collect();
     gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: Some(name),
         entries: &entries,
@@ -111,8 +113,10 @@ pub fn bind<'a>(
     layout: &wgpu::BindGroupLayout,
     resources: impl IntoIterator<Item = (u32, wgpu::BindingResource<'a>)>,
 ) -> wgpu::BindGroup {
-    let entry = |(binding, resource)| wgpu::BindGroupEntry { binding, resource };
-    let entries: Vec<_> = resources.into_iter().map(entry).collect();
+    let entries: Vec<_> = resources
+        .into_iter()
+        .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
+        .collect();
     gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: None,
         layout,

@@ -1,7 +1,8 @@
 //! An open GPU device: its memory and its errors.
 
 use std::ops::Range;
-use std::sync::atomic::{AtomicU8, AtomicU64, Ordering::Relaxed};
+use std::sync::atomic::Ordering::Relaxed;
+use std::sync::atomic::{AtomicU8, AtomicU64};
 use std::sync::{Arc, Mutex};
 
 use pollster::block_on;
@@ -180,8 +181,10 @@ impl GpuDevice {
     /// Bytes that a storage buffer may have.
     pub fn binding_bytes(&self) -> u64 {
         let limits = self.device.limits();
-        let of_adapter = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
-        of_adapter.min(self.buffer_limit.load(Relaxed))
+        limits
+            .max_storage_buffer_binding_size
+            .min(limits.max_buffer_size)
+            .min(self.buffer_limit.load(Relaxed))
     }
 
     /// A storage buffer of zeros.

@@ -81,8 +81,8 @@ impl GpuEngine {
         let [width, height] = job.settings.image_size;
         let first_sample = job.settings.first_sample;
         let old = self.resources.as_ref();
-        let form = SceneForm::of(&self.gpu, &job);
-        self.pass.link(&self.gpu, form.geometry.traversal())?;
+        self.pass
+            .link(&self.gpu, SceneForm::of(&self.gpu, &job).geometry.traversal())?;
         let resources = Resources::new(&self.gpu, &self.pass, job.clone(), old)?;
         self.budget = match old {
             Some(old) if old.job.plan.specialisation() == job.plan.specialisation() => self.budget.of_another_scene(),
@@ -178,12 +178,14 @@ impl GpuEngine {
     /// Renders a slice in one dispatch.
     fn render(&mut self, works: &[Work]) -> Result<(), GpuError> {
         let grid = self.schedule.grid();
-        let tile = |work: &Work| Tile {
-            origin: grid.origin(work.tile),
-            first_sample: work.first_sample,
-            sample_count: work.count,
-        };
-        let tiles: Vec<Tile> = works.iter().map(tile).collect();
+        let tiles: Vec<Tile> = works
+            .iter()
+            .map(|work| Tile {
+                origin: grid.origin(work.tile),
+                first_sample: work.first_sample,
+                sample_count: work.count,
+            })
+            .collect();
         let begun = Instant::now();
         self.dispatch(&tiles)?;
         self.budget.note(grid.pixel_samples(works), begun.elapsed());
@@ -230,8 +232,12 @@ impl GpuEngine {
         self.in_film = None;
         for band in resources.sums.bands() {
             for first in (0..band.pixels).step_by(READ_PIXELS) {
-                let part = first..(first + READ_PIXELS).min(band.pixels);
-                merge_band(&self.gpu, &mut self.film, band, part)?;
+                merge_band(
+                    &self.gpu,
+                    &mut self.film,
+                    band,
+                    first..(first + READ_PIXELS).min(band.pixels),
+                )?;
             }
         }
         resources.sums.clear(&self.gpu);

@@ -28,9 +28,9 @@ use crate::optics::layer::fuzz::FUZZ_ROUGHNESS_MIN;
 use crate::optics::layer::transmission::APART_LEAST;
 use crate::optics::lobe::{ALPHA_MIN, Horizon, Lobe, LobeTraits, MIRROR_WIDTH, Width};
 use crate::optics::material::{
-    COAT_ABSORBS, COAT_IS_GGX, COATS_BASE, COMPENSATES, FIELDS, Field, HAS_BOX, HAS_PROFILE, HOLDS_INTEGRALS,
-    LIGHT_GROUP_SHIFT, MATCHED_NODES, NO_TEXTURE, OVER_AZIMUTH, SPARES_METAL, VERTEX_BASE, VERTEX_EMISSION,
-    VERTEX_OPACITY, WEIGHS_INDEX,
+    COAT_ABSORBS, COAT_IS_GGX, COATS_BASE, COMPENSATES, FIELDS, Field, HAS_BOX, HAS_PROFILE, HOLDS_FILM,
+    HOLDS_INTEGRALS, LIGHT_GROUP_SHIFT, MATCHED_NODES, NO_TEXTURE, OVER_AZIMUTH, SPARES_METAL, VERTEX_BASE,
+    VERTEX_EMISSION, VERTEX_OPACITY, WEIGHS_INDEX,
 };
 use crate::optics::random::Sequence;
 use crate::optics::rough_diffuse::{HEAD_ON, MEAN, ROUGH_COSINE_MIN};
@@ -67,11 +67,13 @@ pub const GENERATED: &[Generated] = &[
 
 /// A constant for each choice: `CURVE_LONG_TAIL` of "long-tail".
 fn choices<T: Named>(prefix: &str) -> String {
-    let line = |choice: &T| {
-        let name = choice.name().to_uppercase().replace('-', "_");
-        format!("const {prefix}_{name}: u32 = {}u;\n", choice.number())
-    };
-    T::ALL.iter().map(line).collect()
+    T::ALL
+        .iter()
+        .map(|choice| {
+            let name = choice.name().to_uppercase().replace('-', "_");
+            format!("const {prefix}_{name}: u32 = {}u;\n", choice.number())
+        })
+        .collect()
 }
 
 /// The choices that the optics know.
@@ -122,7 +124,7 @@ macro_rules! by_name {
 /// The constants that Rust and the shaders share.
 fn constants() -> String {
     let whole = by_name! { u32:
-        ALBEDO_NODES TOTAL_NODES ROUGHNESS_NODES ROUGH_ALBEDO_LENGTH CUSTOM_INTERVALS MATCHED_NODES NO_TEXTURE HOLDS_INTEGRALS OVER_AZIMUTH VERTEX_BASE VERTEX_EMISSION VERTEX_OPACITY SPARES_METAL COMPENSATES HAS_BOX WEIGHS_INDEX HAS_PROFILE COATS_BASE COAT_ABSORBS COAT_IS_GGX LIGHT_GROUP_SHIFT WRAP_REPEAT WRAP_MIRRORED WRAP_CLAMP IS_SRGB IS_NEAREST IS_SECOND_SET IS_FINE IS_BOX TURNS_NORMALS CHANNEL_SHIFT WRAP_SHIFT PIXEL_DIMENSION LENS_DIMENSION DRAW_BITS NO_MEDIUM PROFILE_AXES_LENGTH TILE_SIDE
+        ALBEDO_NODES TOTAL_NODES ROUGHNESS_NODES ROUGH_ALBEDO_LENGTH CUSTOM_INTERVALS MATCHED_NODES NO_TEXTURE HOLDS_INTEGRALS HOLDS_FILM OVER_AZIMUTH VERTEX_BASE VERTEX_EMISSION VERTEX_OPACITY SPARES_METAL COMPENSATES HAS_BOX WEIGHS_INDEX HAS_PROFILE COATS_BASE COAT_ABSORBS COAT_IS_GGX LIGHT_GROUP_SHIFT WRAP_REPEAT WRAP_MIRRORED WRAP_CLAMP IS_SRGB IS_NEAREST IS_SECOND_SET IS_FINE IS_BOX TURNS_NORMALS CHANNEL_SHIFT WRAP_SHIFT PIXEL_DIMENSION LENS_DIMENSION DRAW_BITS NO_MEDIUM PROFILE_AXES_LENGTH TILE_SIDE
     };
     let real = by_name! { f64:
         ALPHA_MIN APART_LEAST MIRROR_WIDTH BASE_EDGE INNER_MAX FUZZ_ROUGHNESS_MIN HEAD_ON MEAN ROUGH_COSINE_MIN LARGEST_FILM_F0 LEAST_FILM_COSINE FILM_TINY COLOR_MIN WAY_COSINE_MIN SHORT_RULE_ROUGHNESS SHORT_RANGE PEAK_RADIUS TINY GAUSSIAN_SIGMA COSINE_MIN POSITION_ERROR MIRROR_HEIGHT_MIN VIEW_COSINE_MIN
@@ -170,8 +172,11 @@ fn structures() -> String {
 
 /// The choices of camera, background and light sampling, and how arrays lie in textures.
 fn scene_choices() -> String {
-    let background = |(number, name)| format!("const BACKGROUND_{name}: u32 = {number}u;\n");
-    let backgrounds: String = BACKGROUNDS.iter().enumerate().map(background).collect();
+    let backgrounds: String = BACKGROUNDS
+        .iter()
+        .enumerate()
+        .map(|(number, name)| format!("const BACKGROUND_{name}: u32 = {number}u;\n"))
+        .collect();
     format!(
         "// Generated from src/job, src/scene/camera.rs and src/gpu.\n{}{}{}const GUIDE_SAMPLES: u32 = {GUIDE_SAMPLES}u;\n\
          const ENVIRONMENT_GROUP: u32 = {ENVIRONMENT_GROUP}u;\n\
@@ -232,8 +237,10 @@ fn plan_constants() -> String {
             general => format!("override {}: bool = {};\n", constant.name, general == 1),
         };
     }
-    let layer = |layer: &Layer| format!(" + (u32(PLAN_{}) << {}u)", layer.name().to_uppercase(), *layer as u32);
-    let layers: String = Layer::ALL.iter().map(layer).collect();
+    let layers: String = Layer::ALL
+        .iter()
+        .map(|layer| format!(" + (u32(PLAN_{}) << {}u)", layer.name().to_uppercase(), *layer as u32))
+        .collect();
     text += &format!("// As bits.\nfn planned_layers() -> u32 {{\n    return 0u{layers};\n}}\n");
     let textures = [
         ("COLOR", [TextureTarget::BaseColor].as_slice()),
@@ -255,8 +262,10 @@ fn plan_constants() -> String {
 
 /// A function that chooses among numbered cases; the number is called `switch`.
 fn dispatch(signature: &str, switch: &str, cases: &[(u32, String)], otherwise: &str) -> String {
-    let case = |(number, value): &(u32, String)| format!("        case {number}u: {{ return {value}; }}\n");
-    let cases: String = cases.iter().map(case).collect();
+    let cases: String = cases
+        .iter()
+        .map(|(number, value)| format!("        case {number}u: {{ return {value}; }}\n"))
+        .collect();
     format!(
         "fn {signature} {{\n    switch {switch} {{\n{cases}        default: {{ return {otherwise}; }}\n    }}\n}}\n"
     )

@@ -3,8 +3,7 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use super::device::GpuDevice;
-use super::traversal::Traversal;
+use super::{device::GpuDevice, traversal::Traversal};
 
 /// The driver's cache of a device, and the file that it is kept in.
 #[derive(Debug)]

@@ -2,9 +2,7 @@
 //! test compares the two.
 
 use crate::job::{BackgroundKind, Settings, plain};
-use crate::scene::camera::Camera;
-use crate::scene::medium::NO_MEDIUM;
-use crate::scene::{Geometry, Part};
+use crate::scene::{Geometry, Part, camera::Camera, medium::NO_MEDIUM};
 
 /// Tiles in a row of the texture that lists them.
 pub const TILE_COLUMNS: u32 = 256;
@@ -171,12 +169,11 @@ plain! {
 
 /// The triangle at a place in the order of [`Compressed::triangles`](crate::scene::Compressed).
 pub fn triangle(part: &Part, place: usize) -> Triangle {
-    let corner = |vertex: u32| {
-        let [x, y, z] = part.positions[vertex as usize].map(f32::to_bits);
-        [x, y, z, vertex]
-    };
     let triangle = part.compressed().triangles[place];
     Triangle {
-        corners: part.triangles[triangle as usize].map(corner),
+        corners: part.triangles[triangle as usize].map(|vertex: u32| {
+            let [x, y, z] = part.positions[vertex as usize].map(f32::to_bits);
+            [x, y, z, vertex]
+        }),
     }
 }

@@ -1,7 +1,6 @@
 //! A pass that reads a scene: group 0 is the scene, group 1 the pass's own. Its pipelines are specialised.
 
-use std::collections::HashMap;
-use std::hash::Hash;
+use std::{collections::HashMap, hash::Hash};
 
 use super::compute;
 use super::device::{GpuDevice, GpuError};

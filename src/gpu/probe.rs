@@ -1,7 +1,6 @@
 //! Single functions asked about inputs of one's own, answered by the shader (`shaders/pass/probe.wgsl`).
 
-use std::hash::Hash;
-use std::sync::Mutex;
+use std::{hash::Hash, sync::Mutex};
 
 use bytemuck::{Pod, Zeroable};
 

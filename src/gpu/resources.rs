@@ -34,13 +34,14 @@ impl Resources {
     /// is unchanged then.
     pub fn new(gpu: &GpuDevice, pass: &PathTracer, job: Arc<Job>, old: Option<&Self>) -> Result<Self, GpuError> {
         gpu.reach(Moment::Uploading);
-        let made = gpu.checked(GpuError::Refused, |_| Self::made(gpu, pass, job, old));
-        made.flatten().inspect_err(|_| {
-            // It may have been overwritten by the new job's. The next work reports a device lost by now.
-            if let Some(old) = old {
-                let _ = old.scene.geometry.write_around(gpu, &old.job.geometry);
-            }
-        })
+        gpu.checked(GpuError::Refused, |_| Self::made(gpu, pass, job, old))
+            .flatten()
+            .inspect_err(|_| {
+                // It may have been overwritten by the new job's. The next work reports a device lost by now.
+                if let Some(old) = old {
+                    let _ = old.scene.geometry.write_around(gpu, &old.job.geometry);
+                }
+            })
     }
 
     fn made(gpu: &GpuDevice, pass: &PathTracer, job: Arc<Job>, old: Option<&Self>) -> Result<Self, GpuError> {

@@ -8,8 +8,7 @@ use super::device::{GpuDevice, GpuError};
 use super::geometry_arrays::{Form, GeometryArrays};
 use super::traversal::Traversal;
 use crate::job::Job;
-use crate::optics::material::Material;
-use crate::optics::table::NODE_LENGTH;
+use crate::optics::{material::Material, table::NODE_LENGTH};
 use crate::scene::Geometry;
 use crate::scene::environment::{Distribution, Environment};
 use crate::scene::inversion::Share;
@@ -213,8 +212,12 @@ fn entry(count: usize, index: usize, share: impl Fn(usize) -> Share, density: f3
     } else {
         last
     };
-    let guides = share(index).guide | next_guide << 16;
-    [lower, share(index).upper, guides, density.to_bits()]
+    [
+        lower,
+        share(index).upper,
+        share(index).guide | next_guide << 16,
+        density.to_bits(),
+    ]
 }
 
 fn environment_map(gpu: &GpuDevice, [width, height]: [u32; 2], texels: &[[f32; 4]]) -> wgpu::TextureView {

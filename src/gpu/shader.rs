@@ -154,7 +154,7 @@ fn module_source(module: &str) -> Result<String, String> {
         return Ok(text);
     }
     let file = SHADERS.get_file(name);
-    let text = file.and_then(|file| file.contents_utf8());
-    text.map(str::to_owned)
+    file.and_then(|file| file.contents_utf8())
+        .map(str::to_owned)
         .ok_or_else(|| format!("no shader module {module}"))
 }

@@ -1,7 +1,6 @@
 //! The adapter's acceleration structures, for ray queries.
 
-use super::device::GpuDevice;
-use super::layout::Triangle;
+use super::{device::GpuDevice, layout::Triangle};
 use crate::scene::Geometry;
 
 /// The bottom-level structures of the model and its surroundings, and the top-level structure over both. Instance 0 is the

@@ -3,10 +3,7 @@
 use super::compute::{self, UNIFORMS, WRITE};
 use super::device::{GpuDevice, GpuError};
 use super::layout::{PixelColors, PixelStatistics, TILE_COLUMNS, Tile};
-use crate::job::Job;
-use crate::job::film::Extras;
-use crate::job::guides::GuideSums;
-use crate::job::tiles::TILE_SIDE;
+use crate::job::{Job, film::Extras, guides::GuideSums, tiles::TILE_SIDE};
 
 /// Tiles per dispatch at most: one workgroup each, of which WebGPU allows 65 535 per dimension.
 pub const DISPATCH_TILES: usize = 65_535;
@@ -14,8 +11,7 @@ pub const DISPATCH_TILES: usize = 65_535;
 /// The layout of the group.
 pub fn layout(gpu: &GpuDevice) -> wgpu::BindGroupLayout {
     let list = compute::texture(wgpu::TextureSampleType::Uint, wgpu::TextureViewDimension::D2);
-    let kinds = [UNIFORMS, list, WRITE, WRITE, WRITE];
-    compute::layout(gpu, "sums", (0..).zip(kinds))
+    compute::layout(gpu, "sums", (0..).zip([UNIFORMS, list, WRITE, WRITE, WRITE]))
 }
 
 /// The sums over samples that the host has not read yet, and the list of tiles to render.
@@ -97,8 +93,12 @@ impl Sums {
         let rows = tiles.len().div_ceil(TILE_COLUMNS as usize);
         let mut whole = tiles.to_vec();
         whole.resize(rows * TILE_COLUMNS as usize, Tile::default());
-        let size = [TILE_COLUMNS, rows as u32];
-        gpu.write_texture(&self.tiles, [0; 3], size, bytemuck::cast_slice(&whole));
+        gpu.write_texture(
+            &self.tiles,
+            [0; 3],
+            [TILE_COLUMNS, rows as u32],
+            bytemuck::cast_slice(&whole),
+        );
     }
 
     /// Sets the sums to zero.
@@ -114,8 +114,11 @@ impl Sums {
 /// Bytes per pixel of the three buffers of a band.
 fn pixel_bytes(extras: Extras) -> [usize; 3] {
     let guides = if extras.guides { size_of::<[GuideSums; 2]>() } else { 0 };
-    let colors = (1 + extras.light_groups as usize) * size_of::<PixelColors>();
-    [colors, size_of::<PixelStatistics>(), guides]
+    [
+        (1 + extras.light_groups as usize) * size_of::<PixelColors>(),
+        size_of::<PixelStatistics>(),
+        guides,
+    ]
 }
 
 impl Band {
@@ -127,8 +130,8 @@ impl Band {
         pixels: u64,
         extras: Extras,
     ) -> Result<Self, GpuError> {
-        let buffer = |bytes: usize| gpu.empty_storage("the image", pixels * bytes as u64);
-        let [colors, statistics, guides] = pixel_bytes(extras).map(buffer);
+        let [colors, statistics, guides] =
+            pixel_bytes(extras).map(|bytes| gpu.empty_storage("the image", pixels * bytes as u64));
         let buffers = [colors?, statistics?, guides?];
         let uniforms = gpu.uniforms(&[first_row, pixels as u32, 0, 0]);
         let list = wgpu::BindingResource::TextureView(tiles);

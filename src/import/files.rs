@@ -257,7 +257,9 @@ fn same_but_for_case(folder: &Path, name: &str) -> Option<PathBuf> {
         if exact.exists() {
             return Some(exact);
         }
-        let mut paths = fs::read_dir(at).ok()?.flatten().map(|entry| entry.path());
+        // A file that is named without a folder lies in the current one.
+        let folder = if at.as_os_str().is_empty() { Path::new(".") } else { &at };
+        let mut paths = fs::read_dir(folder).ok()?.flatten().map(|entry| entry.path());
         paths.find(|path| is_called(path, part))
     });
     found.filter(|path| path.is_file())

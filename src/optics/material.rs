@@ -22,6 +22,8 @@ pub const NO_TEXTURE: u32 = u32::MAX;
 pub const HOLDS_INTEGRALS: u32 = 1;
 /// Bit of [`Material::has_rough_tables`]: the tables extend over the azimuth of the view, as the lobe is stretched.
 pub const OVER_AZIMUTH: u32 = 2;
+/// Bit of [`Material::has_rough_tables`]: what the thin film changes follows in a table of its own, as no texture varies it.
+pub const HOLDS_FILM: u32 = 4;
 /// Nodes of the table that has a lobe's roughness for that of GGX.
 pub const MATCHED_NODES: usize = 17;
 
@@ -208,7 +210,7 @@ material! {
         normal_strength: T,
         /// [`HOLDS_INTEGRALS`] if the surface is partly metal or varies
         /// ([`rough_albedo_table`](super::albedo::rough_albedo_table)), [`OVER_AZIMUTH`] if the lobe is stretched and of one
-        /// roughness. 0: tables over the view's cosine alone; 1: over the roughness too.
+        /// roughness, [`HOLDS_FILM`]. 0: tables over the view's cosine alone; 1: over the roughness too.
         has_rough_tables: u32,
         /// Roughness that the texture multiplies; GGX's roughness if there is a `roughness_table`.
         texture_roughness: T,
@@ -350,11 +352,9 @@ impl<T: Real> Material<T> {
             self.has_rough_tables & OVER_AZIMUTH != 0
         }
 
-        /// True if its albedo tables are followed by those of its thin film, which no texture varies.
+        /// True if its albedo tables are followed by those of its thin film.
         pub fn has_film_table(&self) -> bool {
-            let has_index = [Fresnel::Schlick as u32, Fresnel::Dielectric as u32].contains(&self.fresnel);
-            let is_varied = self.has_texture(TextureTarget::OF_FILM) || self.has_coated_table();
-            self.has_film == 1 && self.holds_integrals() && has_index && !is_varied
+            self.has_rough_tables & HOLDS_FILM != 0
         }
 
         /// True where textures change how the coat changes the roughness below it.

@@ -33,7 +33,7 @@ inlined! {
         let is_within = surface.is_within(material);
         let gain = |channel: usize| {
             let [_, outside, inside] = kept_energies(material, surface, shape, channel);
-            T::ONE / T::select(is_within, inside, outside)
+            T::ONE / T::select(is_within, inside, outside).max(T::from_f64(1e-6))
         };
         let first = gain(0);
         if material.has_film == 0 || !material.transmits().any() {

@@ -3,8 +3,7 @@
 use crate::analysis::adaptive::{Round, next_goals};
 use crate::analysis::noise::{Noise, noise};
 use crate::document::RenderSettings;
-use crate::job::film::Film;
-use crate::job::tiles::Schedule;
+use crate::job::{film::Film, tiles::Schedule};
 
 /// Largest share of time for error measurements; twice as much near the end, so that the render does not overshoot.
 const COST_SHARE: f64 = 0.015;
@@ -174,14 +173,14 @@ impl Convergence {
         }
         let growth = match (settings.noise, self.noise()) {
             // The error falls as 1/√n; rather a little short of the target than beyond it.
-            (Some(target_noise), Some(noise)) => {
-                let target = target_noise * self.doubt();
-                (noise.relative / target).powi(2).min(paced.max(GROWTH_TARGETED))
-            }
+            (Some(target_noise), Some(noise)) => (noise.relative / (target_noise * self.doubt()))
+                .powi(2)
+                .min(paced.max(GROWTH_TARGETED)),
             _ => paced.max(GROWTH_WATCHED),
         };
-        let growth = growth.max(growth_min);
-        let goal = (f64::from(most) * growth).ceil().max(f64::from(most) + 1.0) as u32;
+        let goal = (f64::from(most) * growth.max(growth_min))
+            .ceil()
+            .max(f64::from(most) + 1.0) as u32;
         vec![goal.min(settings.samples); samples.len()]
     }
 }

@@ -24,13 +24,17 @@ pub fn exposure(image: &Image, view: &ViewSettings) -> f32 {
     if !view.auto_exposure {
         return chosen;
     }
-    let log_of = |pixel: &[f32; 4]| {
-        let [r, g, b, alpha] = pixel.map(f64::from);
-        let luminance = (0.2126 * r + 0.7152 * g + 0.0722 * b) / alpha.max(1e-9);
-        [alpha * luminance.max(LUMINANCE_MIN).ln(), alpha]
-    };
     let add = |a: [f64; 2], b: [f64; 2]| [a[0] + b[0], a[1] + b[1]];
-    let of_block = |range: Range<usize>| image.pixels[range].iter().map(log_of).fold([0.0; 2], add);
+    let of_block = |range: Range<usize>| {
+        image.pixels[range]
+            .iter()
+            .map(|pixel| {
+                let [r, g, b, alpha] = pixel.map(f64::from);
+                let luminance = (0.2126 * r + 0.7152 * g + 0.0722 * b) / alpha.max(1e-9);
+                [alpha * luminance.max(LUMINANCE_MIN).ln(), alpha]
+            })
+            .fold([0.0; 2], add)
+    };
     let blocks = parallel::map_blocks(image.pixels.len(), of_block).into_iter();
     let [logs, weight] = blocks.fold([0.0; 2], add);
     if weight > 0.0 {

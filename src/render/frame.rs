@@ -1,11 +1,10 @@
 //! An image of a film, with what belongs to it.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+use std::sync::atomic::AtomicU64;
+use std::sync::atomic::Ordering::Relaxed;
 
-use super::denoise::Denoised;
-use super::output::Rendered;
-use super::shown::PixelFacts;
+use super::{denoise::Denoised, output::Rendered, shown::PixelFacts};
 use crate::job::film::Image;
 
 /// Identifies a film among those of all sessions. A render begun again, or at another size, has another one.
@@ -13,6 +12,7 @@ use crate::job::film::Image;
 pub struct FilmId(u64);
 
 impl FilmId {
+    #[expect(clippy::new_without_default, reason = "each is another")]
     pub fn new() -> Self {
         static LAST: AtomicU64 = AtomicU64::new(0);
         Self(LAST.fetch_add(1, Relaxed))

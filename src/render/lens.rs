@@ -60,8 +60,10 @@ fn scaled(pixel: [f32; 4], by: f32) -> [f32; 4] {
 fn transposed_box(pixels: &[[f32; 4]], width: usize, radius: usize) -> Vec<[f32; 4]> {
     let height = pixels.len() / width.max(1);
     let blurred = parallel::map(height, |row| box_mean(&pixels[row * width..][..width], radius));
-    let column = |x: usize| (0..height).map(move |y| (x, y));
-    (0..width).flat_map(column).map(|(x, y)| blurred[y][x]).collect()
+    (0..width)
+        .flat_map(|x| (0..height).map(move |y| (x, y)))
+        .map(|(x, y)| blurred[y][x])
+        .collect()
 }
 
 fn box_mean(row: &[[f32; 4]], radius: usize) -> Vec<[f32; 4]> {

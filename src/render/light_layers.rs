@@ -2,8 +2,7 @@
 
 use std::borrow::Cow;
 
-use crate::document::effect::without_what_is_off;
-use crate::document::{Document, GroupName};
+use crate::document::{Document, GroupName, effect::without_what_is_off};
 use crate::job::film::{Film, Image};
 
 /// The light of a group, under its name.
@@ -18,8 +17,9 @@ pub fn light_groups(film: &Film, document: &Document) -> Vec<GroupName> {
 
 /// The light of each group as it was rendered, by the group's name.
 pub fn light_layers(film: &Film, document: &Document) -> Vec<LightLayer> {
-    let names = light_groups(film, document).into_iter().enumerate();
-    names
+    light_groups(film, document)
+        .into_iter()
+        .enumerate()
         .map(|(group, name)| (name.into(), film.light_image(group)))
         .collect()
 }

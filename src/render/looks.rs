@@ -1,7 +1,6 @@
 //! Comparison of two materials: a ball of each in the studio, and the difference of the renders.
 
-use std::sync::Arc;
-use std::time::Duration;
+use std::{sync::Arc, time::Duration};
 
 use image::RgbImage;
 
@@ -47,11 +46,12 @@ pub fn compared(materials: &[MaterialSettings; 2]) -> Result<Compared, SessionEr
         rendered(&mut session, &materials[1])?,
     ];
     let halves = [&first, &second].map(|render| Halves::of(&render.film));
-    let apart = |pixel: usize| {
-        let [first, second] = &halves;
-        (first.even[pixel] - second.even[pixel]) * (first.odd[pixel] - second.odd[pixel])
-    };
-    let products: Vec<f64> = (0..first.film.pixel_count()).map(apart).collect();
+    let products: Vec<f64> = (0..first.film.pixel_count())
+        .map(|pixel| {
+            let [first, second] = &halves;
+            (first.even[pixel] - second.even[pixel]) * (first.odd[pixel] - second.odd[pixel])
+        })
+        .collect();
     let mean = halves[0].mean_luminance().max(1e-9);
     let mut map = RgbImage::new(SIDE, SIDE);
     for (x, y, color) in map.enumerate_pixels_mut() {
@@ -77,8 +77,9 @@ fn resolved(products: &[f64], [x, y]: [usize; 2]) -> f64 {
         squares += product * product;
     }
     let mean: f64 = sum / count;
-    let error = ((squares / count - mean * mean).max(0.0) / count).sqrt();
-    (mean - error).max(0.0).sqrt()
+    (mean - ((squares / count - mean * mean).max(0.0) / count).sqrt())
+        .max(0.0)
+        .sqrt()
 }
 
 /// As the default view shows it.

@@ -2,9 +2,7 @@
 
 use super::engine::{EngineInfo, EngineKind};
 pub use crate::import::limits::{LIMIT_VARIABLE, free, limit};
-use crate::job::Job;
-use crate::job::effect::EffectId;
-use crate::job::film::Extras;
+use crate::job::{Job, effect::EffectId, film::Extras};
 
 /// Bytes per pixel besides the film: the mean image, the display image and the file's image.
 const PICTURE_BYTES: u64 = 16 + 4 + 12;

@@ -10,18 +10,13 @@ use exr::prelude::{
 use image::Rgb;
 use image::codecs::hdr::HdrEncoder;
 
-use super::display::display;
-use super::light_layers::LightLayer;
-use super::sums::KeptFilm;
+use super::{display::display, light_layers::LightLayer, sums::KeptFilm};
 use crate::document::Document;
 use crate::import::endings::ending;
 use crate::job::features::Features;
 use crate::job::film::{Film, Image};
 use crate::optics::primaries::REC709;
-use crate::store::FileError;
-use crate::store::picture::png_bytes;
-use crate::store::project::own_text;
-use crate::store::replace::save_by;
+use crate::store::{FileError, picture::png_bytes, project::own_text, replace::save_by};
 
 /// Errors of image output.
 #[derive(Debug, thiserror::Error)]
@@ -168,8 +163,7 @@ fn write_exr(file: &mut (impl Write + Seek), rendered: Rendered<'_>, attributes:
     let numbers = channels
         .into_iter()
         .map(|(name, values)| (name, FlatSamples::F32(values)));
-    let sums = rendered.sums.into_iter().flat_map(KeptFilm::channels);
-    let all = numbers.chain(sums);
+    let all = numbers.chain(rendered.sums.into_iter().flat_map(KeptFilm::channels));
     let all = all
         .map(|(name, samples)| AnyChannel::new(name.as_str(), samples))
         .collect();

@@ -1,13 +1,10 @@
 //! The map of numerical trouble, made in the background.
 
-use std::io;
-use std::sync::Arc;
+use std::{io, sync::Arc};
 
-use super::background::Background;
-use super::seen_map::fitted;
+use super::{background::Background, seen_map::fitted};
 use crate::cpu::precision::precision;
-use crate::job::Job;
-use crate::job::precision::PrecisionMap;
+use crate::job::{Job, precision::PrecisionMap};
 
 /// Longest side of the map in pixels.
 const SIDE_MAX_PX: u32 = 320;

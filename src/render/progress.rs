@@ -1,7 +1,6 @@
 //! Progress of a render, and its stop reason.
 
-use crate::analysis::halves::Distance;
-use crate::analysis::noise::Noise;
+use crate::analysis::{halves::Distance, noise::Noise};
 
 /// Reason for the end of a render.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
@@ -65,8 +64,9 @@ pub struct Progress {
 impl Progress {
     /// Whether the target error is reached.
     pub fn is_converged(&self) -> bool {
-        let pair = self.stop_error().zip(self.noise_wanted);
-        pair.is_some_and(|(error, wanted)| error <= wanted)
+        self.stop_error()
+            .zip(self.noise_wanted)
+            .is_some_and(|(error, wanted)| error <= wanted)
     }
 
     /// Samples per pixel after which the error would be down to this, as far as it is known.

@@ -283,8 +283,10 @@ impl Task {
             Self::Picture { path, .. } => Some(path),
             Self::Turntable(table) => table.video.as_ref().or(table.folder.as_ref()),
         };
-        let name = path.and_then(|path| path.file_name()).unwrap_or_default();
-        name.to_string_lossy().into_owned()
+        path.and_then(|path| path.file_name())
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into_owned()
     }
 }
 
@@ -292,8 +294,9 @@ impl Task {
 fn free_name(entries: &[(Entry, Option<Order>)], name: &str) -> String {
     let numbered = (2..).map(|number| format!("{name} ({number})"));
     let mut names = std::iter::once(name.to_owned()).chain(numbered);
-    let is_free = |name: &String| entries.iter().all(|(entry, _)| entry.name != *name);
-    names.find(is_free).unwrap_or_default()
+    names
+        .find(|name| entries.iter().all(|(entry, _)| entry.name != *name))
+        .unwrap_or_default()
 }
 
 /// Renders a task and returns its summary.

@@ -1,7 +1,6 @@
 //! Clouds of samples for plots, drawn on a thread of their own by the function that the engine renders with.
 
-use std::io;
-use std::sync::Arc;
+use std::{io, sync::Arc};
 
 use super::background::{Background, Responder};
 use super::engine::{EngineChoice, Sampler};
@@ -107,8 +106,11 @@ fn draw(sampler: &mut Option<(EngineChoice, Sampler)>, query: &SampleQuery) -> R
     };
     let raw = opened.draw(&free).map_err(crate::in_words)?;
     let mirror = request.middle();
-    let side = mirror.z.signum() as f32;
-    let below = raw.samples.iter().filter(|[_, _, z, _]| *z * side < 0.0).count();
+    let below = raw
+        .samples
+        .iter()
+        .filter(|[_, _, z, _]| *z * (mirror.z.signum() as f32) < 0.0)
+        .count();
     let directions = cloud.samples.iter().map(|&[x, y, z, _]| Vec3::from_f32([x, y, z]));
     let mut counted = angle_histogram(directions, mirror, ANGLE_BINS).density();
     // Absorbed samples count as drawn, as in the density.

@@ -1,13 +1,11 @@
 //! Map of the object and material slot at each pixel of the screen, made in the background: for outlines.
 
-use std::io;
-use std::sync::Arc;
+use std::{io, sync::Arc};
 
 use super::background::Background;
 use crate::job::Job;
 use crate::parallel;
-use crate::scene::NO_OBJECT;
-use crate::scene::camera::camera_ray;
+use crate::scene::{NO_OBJECT, camera::camera_ray};
 
 /// Longest side of the map in pixels.
 const SIDE_MAX_PX: u32 = 2048;
@@ -70,10 +68,8 @@ pub fn fitted(size: [u32; 2], side_max: u32) -> [u32; 2] {
 
 fn seen_at(job: &Job, pixel: [u32; 2], size: [u32; 2]) -> [u32; 2] {
     let settings = &job.settings;
-    let place = [0, 1].map(|i| {
-        let share = (f64::from(pixel[i]) + 0.5) / f64::from(size[i]);
-        (share * f64::from(settings.image_size[i])) as f32
-    });
+    let place =
+        [0, 1].map(|i| ((f64::from(pixel[i]) + 0.5) / f64::from(size[i]) * f64::from(settings.image_size[i])) as f32);
     let [origin, direction] = camera_ray(&settings.camera.cast(), place, settings.image_size, [0.5; 2]);
     let geometry = &job.geometry;
     let hit = geometry.intersect(origin.to_f32(), direction.to_f32(), f32::MAX);

@@ -5,8 +5,7 @@ use crate::analysis::noise::relative_errors;
 use crate::document::ViewSettings;
 use crate::job::features::Features;
 use crate::job::film::{Film, Image};
-use crate::optics::tone::srgb_from_linear;
-use crate::optics::vector::vec3;
+use crate::optics::{tone::srgb_from_linear, vector::vec3};
 use crate::parallel;
 use crate::plot::scale_color;
 
@@ -176,8 +175,7 @@ pub fn map_of_film(source: &Source<'_>, shown: Shown) -> Option<Map> {
         Shown::Variance => map_of_errors(&features().variance),
         Shown::Samples => {
             let counts = features().samples;
-            let high = f64::from(counts.iter().copied().fold(1.0, f32::max));
-            linear_map(&counts, [0.0, high])
+            linear_map(&counts, [0.0, f64::from(counts.iter().copied().fold(1.0, f32::max))])
         }
         Shown::Albedo => colors(&features().albedo, |[r, g, b]| srgb_from_linear(vec3(r, g, b)).to_f32()),
         Shown::Normal => colors(&features().normal, |normal| normal.map(|x| 0.5 + 0.5 * x)),
@@ -220,27 +218,27 @@ fn linear_map(values: &[f32], [low, high]: [f64; 2]) -> Map {
 }
 
 fn colored(values: &[f32], scale: Scale) -> Map {
-    let color = |value: &f32| {
-        if !value.is_finite() {
-            return NOTHING;
-        }
-        let [red, green, blue] = scale_color(scale.place(f64::from(*value)));
-        [red, green, blue, 255]
-    };
     Map {
-        rgba: parallel::map_each(values, color).into_flattened(),
+        rgba: parallel::map_each(values, |value| {
+            if !value.is_finite() {
+                return NOTHING;
+            }
+            let [red, green, blue] = scale_color(scale.place(f64::from(*value)));
+            [red, green, blue, 255]
+        })
+        .into_flattened(),
         scale: Some(scale),
     }
 }
 
 /// Colours in [0, 1].
 fn colors(values: &[[f32; 3]], encode: impl Fn([f32; 3]) -> [f32; 3] + Sync) -> Map {
-    let bytes = |value: &[f32; 3]| {
-        let [r, g, b] = encode(*value).map(|x| (255.0 * x.clamp(0.0, 1.0) + 0.5) as u8);
-        [r, g, b, 255]
-    };
     Map {
-        rgba: parallel::map_each(values, bytes).into_flattened(),
+        rgba: parallel::map_each(values, |value| {
+            let [r, g, b] = encode(*value).map(|x| (255.0 * x.clamp(0.0, 1.0) + 0.5) as u8);
+            [r, g, b, 255]
+        })
+        .into_flattened(),
         scale: None,
     }
 }
@@ -257,12 +255,10 @@ pub fn luminance([red, green, blue]: [f32; 3]) -> f64 {
 
 fn stops(image: &Image, view: &ViewSettings) -> Vec<f32> {
     let exposure = exposure(image, view);
-    let of = |[red, green, blue, alpha]: &[f32; 4]| {
+    parallel::map_each(&image.pixels, |[red, green, blue, alpha]| {
         let straight = exposure / alpha.max(1e-9);
-        let value = luminance([red, green, blue].map(|x| x * straight));
-        stops_of(value.max(1e-30)).clamp(-1e3, 1e3) as f32
-    };
-    parallel::map_each(&image.pixels, of)
+        stops_of(luminance([red, green, blue].map(|x| x * straight)).max(1e-30)).clamp(-1e3, 1e3) as f32
+    })
 }
 
 /// Whether displayed bytes are as bright as they can be in a channel, or black in all.

@@ -9,13 +9,10 @@ use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 use exr::prelude::{
-    AnyChannel, AnyChannels, AttributeValue, FlatSamples, Layer, LayerAttributes, ReadChannels as _, ReadLayers as _,
-    Text, read,
+    AnyChannels, AttributeValue, FlatSamples, Layer, LayerAttributes, ReadChannels as _, ReadLayers as _, Text, read,
 };
 
-use crate::document::change::Change;
-use crate::document::effect::without_what_is_off;
-use crate::document::{Document, GroupName};
+use crate::document::{Document, GroupName, change::Change, effect::without_what_is_off};
 use crate::job::features::Features;
 use crate::job::film::{Extras, Film};
 use crate::job::guides::GUIDE_SAMPLES;
@@ -96,8 +93,9 @@ impl KeptFilm {
             true => before.map(|before| (GUIDE_SAMPLES / 2).saturating_sub(before)),
             false => [0; 2],
         };
-        let seen = |pixel: usize| std::array::from_fn(|half| most[half].min(film.halves(pixel)[half].samples as u32));
-        let guide_samples = (0..film.pixel_count()).map(seen).collect();
+        let guide_samples = (0..film.pixel_count())
+            .map(|pixel| std::array::from_fn(|half| most[half].min(film.halves(pixel)[half].samples as u32)))
+            .collect();
         Self {
             samples: vec![[first, first + samples]],
             film,
@@ -142,8 +140,9 @@ impl KeptFilm {
     /// Refuses a film with a pixel that has samples, but not enough of the first among them.
     fn check_seen(&self, is_enough: impl Fn([u32; 2], [f64; 2]) -> bool) -> Result<(), SumsError> {
         let samples = |pixel: usize| self.film.halves(pixel).map(|half| half.samples);
-        let is_seen = |pixel: usize| is_enough(self.guide_samples[pixel], samples(pixel)) || samples(pixel) == [0.0; 2];
-        match (0..self.film.pixel_count()).all(is_seen) {
+        match (0..self.film.pixel_count())
+            .all(|pixel| is_enough(self.guide_samples[pixel], samples(pixel)) || samples(pixel) == [0.0; 2])
+        {
             true => Ok(()),
             false => Err(SumsError::NotSeen),
         }
@@ -155,8 +154,9 @@ impl KeptFilm {
         let document = document_text(path, &self.document)?;
         let kept = format!("{}\n{}\n{document}", samples.join(","), self.world_units_per_unit);
         let mut attributes = LayerAttributes::default();
-        let value = AttributeValue::Text(Text::from(kept.as_str()));
-        attributes.other.insert(Text::from(KEPT), value);
+        attributes
+            .other
+            .insert(Text::from(KEPT), AttributeValue::Text(Text::from(kept.as_str())));
         Ok(attributes)
     }
 
@@ -202,8 +202,11 @@ impl KeptFilm {
         let mut channels = Vec::new();
         for (half, word) in HALVES.into_iter().enumerate() {
             let sums = |pixel: usize| film.halves(pixel)[half];
-            let deviation = |pixel| sums(pixel).squared_deviations.min(f64::from(f32::MAX)) as f32;
-            let deviations = FlatSamples::F32((0..pixels).map(deviation).collect());
+            let deviations = FlatSamples::F32(
+                (0..pixels)
+                    .map(|pixel| sums(pixel).squared_deviations.min(f64::from(f32::MAX)) as f32)
+                    .collect(),
+            );
             let samples = FlatSamples::U32((0..pixels).map(|pixel| sums(pixel).samples as u32).collect());
             channels.push((format!("sums.{word}.deviations"), deviations));
             channels.push((format!("sums.{word}.samples"), samples));
@@ -371,8 +374,9 @@ impl<'a> Sums<'a> {
     fn find(&self, name: &str) -> Option<&FlatSamples> {
         let name = format!("sums.{name}");
         let mut channels = self.layer.channel_data.list.iter();
-        let is_meant = |channel: &&AnyChannel<FlatSamples>| channel.name == *name.as_str();
-        channels.find(is_meant).map(|channel| &channel.sample_data)
+        channels
+            .find(|channel| channel.name == *name.as_str())
+            .map(|channel| &channel.sample_data)
     }
 
     /// Whether it has guides. Those of an older version, over both halves, are missing in each.

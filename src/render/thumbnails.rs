@@ -17,10 +17,8 @@ use super::step_denoiser::StepDenoiser;
 use super::{EngineChoice, Session, SessionError};
 use crate::document::{Document, MaterialSettings};
 use crate::import::environment::load;
-use crate::scene::{
-    ModelSource,
-    environment::{Environment, EnvironmentSource, thumbnail},
-};
+use crate::scene::ModelSource;
+use crate::scene::environment::{Environment, EnvironmentSource, thumbnail};
 use crate::store::{picture::png_bytes, preset::material_text, replace::save_atomically};
 
 /// Columns and rows of a material's thumbnail.
@@ -87,6 +85,7 @@ impl Subject {
 
 /// Starts the worker for the latest request; `cache`, created if needed, keeps thumbnails between starts. It pauses while
 /// `hold` is set, for the viewport.
+#[expect(clippy::map_entry, reason = "a picture that fails is not entered")]
 pub fn spawn_thumbnails(
     cache: Option<PathBuf>,
     hold: Arc<AtomicBool>,

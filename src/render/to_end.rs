@@ -24,8 +24,7 @@ pub struct Ended {
 /// Submits a document to a session. After a lost GPU device it continues with another one; after any other GPU failure on
 /// the CPU, unless the GPU was requested by name.
 pub fn submit(session: &mut Session, engine: EngineChoice, document: &Document) -> Result<(), SessionError> {
-    let submitted = session.submit(document).map(|_| ());
-    or_fall_back(submitted, session, engine, document)
+    or_fall_back(session.submit(document).map(|_| ()), session, engine, document)
 }
 
 /// Renders the submitted document to its end, falling back as [`submit`] does, and denoises it if requested. `on_progress`
@@ -70,8 +69,7 @@ fn or_fall_back(
     match outcome {
         Err(SessionError::Gpu(error)) if engine == EngineChoice::Auto || error.is_lost() => {
             log::warn!("{}", session.recover(&error));
-            let submitted = session.submit(document).map(|_| ());
-            or_fall_back(submitted, session, engine, document)
+            or_fall_back(session.submit(document).map(|_| ()), session, engine, document)
         }
         outcome => outcome,
     }

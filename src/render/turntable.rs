@@ -9,9 +9,7 @@ use super::step_denoiser::StepDenoiser;
 use super::to_end::{step_to_end, submit};
 use crate::document::Document;
 use crate::document::turntable::{Turn, turned};
-use crate::store::FileError;
-use crate::store::replace::check_saving;
-use crate::store::video::Video;
+use crate::store::{FileError, replace::check_saving, video::Video};
 
 /// Frames a second of a video at first.
 pub const FPS: f64 = 24.0;

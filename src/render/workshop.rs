@@ -3,14 +3,11 @@
 //! Each kernel has an engine and a device of its own, because software Vulkan compiles at the first dispatch, which would
 //! block all other dispatches of the device.
 
-use std::sync::Arc;
-use std::thread::JoinHandle;
-use std::time::Instant;
+use std::{sync::Arc, thread::JoinHandle, time::Instant};
 
 use super::engine::Engine;
 use crate::gpu::{AdapterKind, GpuAdapter, GpuEngine, GpuError, Traversal};
-use crate::job::Job;
-use crate::job::plan::Specialisation;
+use crate::job::{Job, plan::Specialisation};
 
 /// Kernels that are kept besides the one in use.
 const KEPT: usize = 3;

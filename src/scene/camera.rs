@@ -140,55 +140,57 @@ pub fn orbit_direction(yaw_deg: f64, pitch_deg: f64) -> DVec3 {
     DVec3::new(pitch.cos() * yaw.sin(), pitch.sin(), pitch.cos() * yaw.cos())
 }
 
-/// Offset of a sample from its pixel's centre, in pixels. Sampled from the filter, so that all samples have equal weight.
-#[inline(always)]
-pub fn filter_offset<T: Real>(filter_kind: u32, xi: [T; 2]) -> [T; 2] {
-    let half = T::HALF;
-    if filter_kind == PixelFilter::Box as u32 {
-        return [xi[0] - half, xi[1] - half];
+inlined! {
+    /// Offset of a sample from its pixel's centre, in pixels. Sampled from the filter, so that all samples have equal weight.
+    pub fn filter_offset<T: Real>(filter_kind: u32, xi: [T; 2]) -> [T; 2] {
+        let half = T::HALF;
+        if filter_kind == PixelFilter::Box as u32 {
+            return [xi[0] - half, xi[1] - half];
+        }
+        // The radius of a Gaussian cut off at GAUSSIAN_RADIUS, by inversion.
+        let kept = 1.0 - (-0.5 * (GAUSSIAN_RADIUS / GAUSSIAN_SIGMA).powi(2)).exp();
+        let radius =
+            T::from_f64(GAUSSIAN_SIGMA) * (T::from_f64(-2.0) * (T::ONE - xi[0] * T::from_f64(kept)).ln()).safe_sqrt();
+        let phi_rad = T::TAU * xi[1];
+        [radius * phi_rad.cos(), radius * phi_rad.sin()]
     }
-    // The radius of a Gaussian cut off at GAUSSIAN_RADIUS, by inversion.
-    let kept = 1.0 - (-0.5 * (GAUSSIAN_RADIUS / GAUSSIAN_SIGMA).powi(2)).exp();
-    let radius =
-        T::from_f64(GAUSSIAN_SIGMA) * (T::from_f64(-2.0) * (T::ONE - xi[0] * T::from_f64(kept)).ln()).safe_sqrt();
-    let phi_rad = T::TAU * xi[1];
-    [radius * phi_rad.cos(), radius * phi_rad.sin()]
-}
 
-/// The camera ray of a sample: (origin, unit direction). `pixel` is two whole numbers; the two random pairs are for the
-/// positions in the pixel and on the lens.
-#[inline(always)]
-pub fn pixel_ray<T: Real>(
-    camera: &Camera<T>,
-    pixel: [T; 2],
-    image_size: [u32; 2],
-    [xi_pixel, xi_lens]: [[T; 2]; 2],
-) -> [Vec3<T>; 2] {
-    let offset: [T; 2] = filter_offset(camera.filter_kind, xi_pixel);
-    let half = T::HALF;
-    let place = [pixel[0] + half + offset[0], pixel[1] + half + offset[1]];
-    camera_ray(camera, place, image_size, xi_lens)
-}
-
-/// The ray through an image position, in pixels from the top left: (origin, unit direction).
-#[inline(always)]
-pub fn camera_ray<T: Real>(camera: &Camera<T>, place: [T; 2], image_size: [u32; 2], xi_lens: [T; 2]) -> [Vec3<T>; 2] {
-    let two = T::TWO;
-    let x = two * place[0] / T::from_f64(f64::from(image_size[0])) - T::ONE;
-    let y = T::ONE - two * place[1] / T::from_f64(f64::from(image_size[1]));
-    let is_parallel = camera.parallel_from.above_zero().any();
-    let (origin, along) = if is_parallel {
-        (camera.origin + camera.right * x + camera.up * y, camera.forward)
-    } else {
-        (camera.origin, camera.forward + camera.right * x + camera.up * y)
-    };
-    if !camera.lens_radius.above_zero().any() {
-        return [origin, along.normalize()];
+    /// The camera ray of a sample: (origin, unit direction). `pixel` is two whole numbers; the two random pairs are for the
+    /// positions in the pixel and on the lens.
+    pub fn pixel_ray<T: Real>(
+        camera: &Camera<T>,
+        pixel: [T; 2],
+        image_size: [u32; 2],
+        [xi_pixel, xi_lens]: [[T; 2]; 2],
+    ) -> [Vec3<T>; 2] {
+        let offset: [T; 2] = filter_offset(camera.filter_kind, xi_pixel);
+        let half = T::HALF;
+        camera_ray(
+            camera,
+            [pixel[0] + half + offset[0], pixel[1] + half + offset[1]],
+            image_size,
+            xi_lens,
+        )
     }
-    let disc = uniform_disc(xi_lens);
-    let shift = camera.right.normalize() * (disc[0] * camera.lens_radius)
-        + camera.up.normalize() * (disc[1] * camera.lens_radius);
-    [origin + shift, (along * camera.focus_distance - shift).normalize()]
+
+    /// The ray through an image position, in pixels from the top left: (origin, unit direction).
+    pub fn camera_ray<T: Real>(camera: &Camera<T>, place: [T; 2], image_size: [u32; 2], xi_lens: [T; 2]) -> [Vec3<T>; 2] {
+        let two = T::TWO;
+        let x = two * place[0] / T::from_f64(f64::from(image_size[0])) - T::ONE;
+        let y = T::ONE - two * place[1] / T::from_f64(f64::from(image_size[1]));
+        let (origin, along) = if camera.parallel_from.above_zero().any() {
+            (camera.origin + camera.right * x + camera.up * y, camera.forward)
+        } else {
+            (camera.origin, camera.forward + camera.right * x + camera.up * y)
+        };
+        if !camera.lens_radius.above_zero().any() {
+            return [origin, along.normalize()];
+        }
+        let disc = uniform_disc(xi_lens);
+        let shift = camera.right.normalize() * (disc[0] * camera.lens_radius)
+            + camera.up.normalize() * (disc[1] * camera.lens_radius);
+        [origin + shift, (along * camera.focus_distance - shift).normalize()]
+    }
 }
 
 /// Framing distance relative to the tight one.
@@ -196,7 +198,5 @@ const FRAME_MARGIN: f64 = 1.05;
 
 /// Distance at which the bounding sphere of radius 1 just fits the image's shorter side.
 pub fn framing_distance(fov_deg: f64, aspect: f64) -> f64 {
-    let half_height = (0.5 * fov_deg.to_radians()).tan();
-    let half = (half_height * aspect.min(1.0)).atan();
-    FRAME_MARGIN / half.sin()
+    FRAME_MARGIN / ((0.5 * fov_deg.to_radians()).tan() * aspect.min(1.0)).atan().sin()
 }

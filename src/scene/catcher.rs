@@ -59,10 +59,11 @@ impl NearLight {
             return 1.0;
         }
         let facing = -self.shape.frame().outwards;
-        let shares = [0, 1, 2].map(|index: usize| {
+        let shares = [0, 1, 2].map(|index| {
             let middle = corners[index].midpoint(corners[(index + 1) % 3]);
-            let cosine = (place - middle).normalize_or_zero().dot(facing);
-            (cosine * scale + offset).clamp(0.0, 1.0).powi(2)
+            ((place - middle).normalize_or_zero().dot(facing) * scale + offset)
+                .clamp(0.0, 1.0)
+                .powi(2)
         });
         shares.iter().sum::<f64>() / 3.0
     }
@@ -124,11 +125,13 @@ fn parts(triangles: &[[DVec3; 3]]) -> Vec<[DVec3; 3]> {
     if triangles.len() >= MANY {
         return triangles.to_vec();
     }
-    let cut = |&[a, b, c]: &[DVec3; 3]| {
-        let [ab, bc, ca] = [a.midpoint(b), b.midpoint(c), c.midpoint(a)];
-        [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
-    };
-    triangles.iter().flat_map(cut).collect()
+    triangles
+        .iter()
+        .flat_map(|&[a, b, c]: &[DVec3; 3]| {
+            let [ab, bc, ca] = [a.midpoint(b), b.midpoint(c), c.midpoint(a)];
+            [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
+        })
+        .collect()
 }
 
 /// Position of a node along an axis.
@@ -158,8 +161,7 @@ fn far_light(environment: &Environment) -> [f64; 3] {
     let steps = (8 * height).max(4096);
     let mut sum = [0.0; 3];
     for step in 0..steps {
-        let sine_squared = (step as f64 + 0.5) / steps as f64;
-        let v = sine_squared.sqrt().asin() / PI;
+        let v = ((step as f64 + 0.5) / steps as f64).sqrt().asin() / PI;
         let place = (v * height as f64 - 0.5).clamp(0.0, (upper - 1) as f64);
         let (row, share) = (place.floor() as usize, place.fract());
         let next = (row + 1).min(upper - 1);
@@ -205,8 +207,7 @@ pub fn catcher_light<T: Scalar>(tables: &[f32], table: u32, position: Vec3<T>) -
     let ((column, across), (row, down)) = (catcher_node(position.x, side), catcher_node(position.z, side));
     let at = |row: usize, column: usize| catcher_radiance::<T>(tables, table, side, row, column);
     let upper = at(row, column).mix(at(row, column + 1), across);
-    let lower = at(row + 1, column).mix(at(row + 1, column + 1), across);
-    upper.mix(lower, down)
+    upper.mix(at(row + 1, column).mix(at(row + 1, column + 1), across), down)
 }
 
 /// The node of the table before a place along an axis, and how far the place is behind it.
@@ -215,16 +216,14 @@ fn catcher_node<T: Scalar>(along: T, side: usize) -> (usize, T) {
     let bend = T::from_f64(f64::from(CATCHER_BEND));
     let bent = away * (T::ONE + bend) / (away + bend);
     let turned = T::select(along.below_zero(), -bent, bent);
-    let last = T::from_f64(side as f64 - 1.0);
-    let place = (turned * T::HALF + T::HALF) * last;
+    let place = (turned * T::HALF + T::HALF) * T::from_f64(side as f64 - 1.0);
     let low = place.floor();
     (low.to_f64() as usize, place - low)
 }
 
 /// Radiance at a node, clamped to the last row and column.
 fn catcher_radiance<T: Scalar>(tables: &[f32], table: u32, side: usize, row: usize, column: usize) -> Vec3<T> {
-    let number = row.min(side - 1) * side + column.min(side - 1);
-    let node = table as usize + NODE_LENGTH * (1 + number);
+    let node = table as usize + NODE_LENGTH * (1 + (row.min(side - 1) * side + column.min(side - 1)));
     Vec3::from_f32([tables[node], tables[node + 1], tables[node + 2]])
 }
 

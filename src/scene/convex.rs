@@ -52,8 +52,9 @@ impl Cluster {
             return true;
         }
         *effort += self.places.len();
-        let is_below = |place: &DVec3| (*place - corner).dot(normal) <= TOLERANCE;
-        self.places.iter().all(is_below)
+        self.places
+            .iter()
+            .all(|place| (*place - corner).dot(normal) <= TOLERANCE)
     }
 }
 

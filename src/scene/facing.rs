@@ -4,8 +4,7 @@ use glam::DVec3;
 
 use std::ops::Range;
 
-use super::geometry::Geometry;
-use super::part::exact;
+use super::{geometry::Geometry, part::exact};
 use crate::parallel;
 
 /// Deviation of a corner's normal from its face's, as 1 − cosine: the rounding of f32 normals.
@@ -18,11 +17,10 @@ pub fn least_view_cosine(geometry: &Geometry, eye: [f64; 3]) -> f64 {
     let of_face = |triangle: usize| {
         let [a, b, c] = exact(geometry.corners(triangle));
         let normal = (b - a).cross(c - a).normalize_or_zero();
-        let is_along = |shading: [f32; 3]| {
+        if !geometry.normals(triangle).into_iter().all(|shading| {
             let shading = DVec3::from_array(shading.map(f64::from)).normalize_or_zero();
             shading == DVec3::ZERO || shading.dot(normal).abs() > 1.0 - TOLERANCE
-        };
-        if !geometry.normals(triangle).into_iter().all(is_along) {
+        }) {
             return 0.0;
         }
         // The height of the eye above the face is the same everywhere on it, and its farthest place is a corner.

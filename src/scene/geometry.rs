@@ -1,8 +1,7 @@
 //! Triangles ready to trace, in one f32 coordinate system of unit size. The model and its surroundings (ground, area lights)
 //! have a hierarchy each.
 
-use std::cell::LazyCell;
-use std::sync::Arc;
+use std::{cell::LazyCell, sync::Arc};
 
 use fearless_simd::Level;
 use glam::{DMat4, DVec3};
@@ -18,8 +17,7 @@ use super::loading::{Cancelled, Loading};
 use super::memory::prefetch;
 use super::model::Model;
 use super::part::{NO_OBJECT, Part, Vertex, exact, is_finite, is_traceable};
-use crate::instructions;
-use crate::parallel;
+use crate::{instructions, parallel};
 
 /// Gap between the lowest point and the ground, in bounding radii: enough that flat bottoms do not flicker.
 const GROUND_GAP: f64 = 1e-4;
@@ -62,8 +60,9 @@ pub struct Geometry {
 impl Geometry {
     /// Makes a model ready to trace; a ground touches its lowest point, in the slot after the model's.
     pub fn build(model: &Model, ground: impl Into<Ground>) -> Self {
-        let alone = Self::of_model(model, &[], &Loading::default()).expect("nobody cancels it");
-        alone.surrounded(ground, &[])
+        Self::of_model(model, &[], &Loading::default())
+            .expect("nobody cancels it")
+            .surrounded(ground, &[])
     }
 
     /// Builds a model without surroundings, with progress and cancellation. Objects in `hidden` are left out; position and
@@ -186,8 +185,12 @@ impl Geometry {
 
     /// The material slots of all triangles in order.
     pub fn slots(&self) -> impl Iterator<Item = u32> {
-        let parts = self.model.slots.iter().chain(&self.around.slots);
-        parts.copied().chain(self.instanced.slots())
+        self.model
+            .slots
+            .iter()
+            .chain(&self.around.slots)
+            .copied()
+            .chain(self.instanced.slots())
     }
 
     /// The model's object that a triangle belongs to; [`NO_OBJECT`] for ground and area lights.
@@ -212,15 +215,21 @@ impl Geometry {
     /// Normals at a triangle's corners.
     pub fn normals(&self, triangle: usize) -> [[f32; 3]; 3] {
         let (part, triangle, instance) = self.find(triangle);
-        let normals = part.vertices_of(triangle).map(|vertex| vertex.normal);
-        placed(normals, instance, Placement::normal)
+        placed(
+            part.vertices_of(triangle).map(|vertex| vertex.normal),
+            instance,
+            Placement::normal,
+        )
     }
 
     /// Tangents at a triangle's corners, with the signs of their bitangents.
     pub fn tangents(&self, triangle: usize) -> [[f32; 4]; 3] {
         let (part, triangle, instance) = self.find(triangle);
-        let tangents = part.vertices_of(triangle).map(Vertex::tangent_and_side);
-        placed(tangents, instance, Placement::tangent)
+        placed(
+            part.vertices_of(triangle).map(Vertex::tangent_and_side),
+            instance,
+            Placement::tangent,
+        )
     }
 
     /// The model with the triangles of its instances one by one, as the GPU has it.
@@ -438,8 +447,9 @@ impl Geometry {
             (self.dropped_not_finite, "a corner that is not finite"),
             (self.dropped_no_area, "no area"),
         ];
-        let counts = counts.iter().filter(|(count, _)| *count > 0);
         counts
+            .iter()
+            .filter(|(count, _)| *count > 0)
             .map(|(count, reason)| format!("{count} triangles left out: {reason}"))
             .collect()
     }
@@ -501,8 +511,11 @@ impl Framing {
         let mesh = &model.mesh;
         let traceable = Traceable::of_meshes(&model.repeated);
         let in_instances = |count: fn(&Traceable) -> usize| {
-            let counts = model.instances.iter().map(|instance| count(&traceable[instance.mesh]));
-            counts.sum::<usize>()
+            model
+                .instances
+                .iter()
+                .map(|instance| count(&traceable[instance.mesh]))
+                .sum::<usize>()
         };
         let counts = parallel::map_blocks(mesh.triangles.len(), |triangles| {
             let corners = || triangles.clone().map(|triangle| mesh.corners(triangle));
@@ -521,12 +534,13 @@ impl Framing {
                 let places = places.map(|place| instance.world_from_mesh.transform_point3(*place));
                 places.map(of).fold(DVec3::NEG_INFINITY, DVec3::max)
             });
-            let all = of_mesh.into_iter().chain(of_instances);
-            all.fold(DVec3::NEG_INFINITY, DVec3::max)
+            of_mesh
+                .into_iter()
+                .chain(of_instances)
+                .fold(DVec3::NEG_INFINITY, DVec3::max)
         };
         let (low, high) = (-largest(&|place| -place), largest(&|place| place));
-        let has_any = low.x <= high.x;
-        let bounds_world = if has_any { [low, high] } else { [DVec3::ZERO; 2] };
+        let bounds_world = if low.x <= high.x { [low, high] } else { [DVec3::ZERO; 2] };
         let center_world = bounds_world[0].midpoint(bounds_world[1]);
         let radius = largest(&|place| DVec3::splat(place.distance(center_world))).x;
         let has_radius = radius > 0.0 && radius.is_finite();

@@ -2,8 +2,7 @@
 
 use glam::{DQuat, DVec2, DVec3, dvec2};
 
-use super::mesh::Mesh;
-use super::shapes;
+use super::{mesh::Mesh, shapes};
 
 /// The plane's half side in bounding radii.
 pub(super) const HALF_SIDE: f64 = 20.0;
@@ -45,10 +44,7 @@ impl Ground {
     pub(super) fn mesh(self, height: f64, slot: u32) -> Option<Mesh> {
         match self {
             Self::None => None,
-            Self::Plane => {
-                let uv_half_side = HALF_SIDE as f32;
-                Some(shapes::square(DVec3::Y * height, HALF_SIDE, uv_half_side, slot))
-            }
+            Self::Plane => Some(shapes::square(DVec3::Y * height, HALF_SIDE, HALF_SIDE as f32, slot)),
             Self::Cyclorama(cyclorama) => Some(cyclorama.mesh(height, slot)),
         }
     }

@@ -160,8 +160,9 @@ impl Instanced {
         let is_shown =
             |instance: &&MeshInstance| !hidden.contains(&instance.object) && !prepared[instance.mesh].part.is_empty();
         let shown: Vec<&MeshInstance> = all.iter().filter(is_shown).collect();
-        let at = |instance: &&MeshInstance| prepared[instance.mesh].at(instance, units_from_world);
-        let placed = parallel::map_each(&shown, at);
+        let placed = parallel::map_each(&shown, |instance| {
+            prepared[instance.mesh].at(instance, units_from_world)
+        });
         let corners = |instance: u32| triangle_of_box(placed[instance as usize].bounds);
         let (top, order) = Hierarchy::new(placed.len(), corners, loading)?;
         let mut instances: Vec<Instance> = order.iter().map(|&place| placed[place as usize].clone()).collect();
@@ -192,17 +193,18 @@ impl Instanced {
 
     /// Memory in bytes, with the hierarchies built so far.
     pub fn bytes(&self) -> usize {
-        let whole = |whole: &Whole| whole.part.bytes() + size_of_val(&whole.numbers[..]);
         self.meshes.iter().map(Part::bytes).sum::<usize>()
             + size_of_val(&self.instances[..])
             + self.top.bytes()
-            + self.whole.get().map_or(0, whole)
+            + self
+                .whole
+                .get()
+                .map_or(0, |whole| whole.part.bytes() + size_of_val(&whole.numbers[..]))
     }
 
     /// Builds the CPU's hierarchies. Returns their memory in bytes.
     pub fn prepare(&self) -> usize {
-        let meshes = self.meshes.iter().map(|part| part.wide().bytes());
-        meshes.sum::<usize>() + self.top().bytes()
+        self.meshes.iter().map(|part| part.wide().bytes()).sum::<usize>() + self.top().bytes()
     }
 
     /// Twice the area of all triangles, and of those that are coarse; see [`leaning_areas`].
@@ -243,14 +245,18 @@ impl Instanced {
             .instances
             .partition_point(|instance| instance.first as usize <= triangle);
         let instance = &self.instances[after - 1];
-        let part = &self.meshes[instance.mesh];
-        (part, triangle - instance.first as usize, Some(instance))
+        (
+            &self.meshes[instance.mesh],
+            triangle - instance.first as usize,
+            Some(instance),
+        )
     }
 
     /// The slots of all triangles in order.
     pub fn slots(&self) -> impl Iterator<Item = u32> {
-        let instances = self.instances.iter();
-        instances.flat_map(|instance| self.meshes[instance.mesh].slots.iter().copied())
+        self.instances
+            .iter()
+            .flat_map(|instance| self.meshes[instance.mesh].slots.iter().copied())
     }
 
     /// The model's own triangles and those of all instances, made on first use: as the GPU has them.
@@ -277,11 +283,16 @@ impl Instanced {
         to.positions
             .extend(mesh.positions.iter().map(|&place| placement.point(place)));
         to.vertices.extend(mesh.vertices.iter().map(|vertex| {
-            let tangent = placement.tangent(vertex.tangent_and_side());
-            vertex.turned(placement.normal(vertex.normal), tangent)
+            vertex.turned(
+                placement.normal(vertex.normal),
+                placement.tangent(vertex.tangent_and_side()),
+            )
         }));
-        let placed = |triangle: &[u32; 3]| placement.in_order(triangle.map(|vertex| vertex + base));
-        to.triangles.extend(mesh.triangles.iter().map(placed));
+        to.triangles.extend(
+            mesh.triangles
+                .iter()
+                .map(|triangle| placement.in_order(triangle.map(|vertex| vertex + base))),
+        );
         to.slots.extend(&mesh.slots);
         to.objects.extend(mesh.objects.iter().map(|_| instance.object));
     }

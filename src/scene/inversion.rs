@@ -39,8 +39,7 @@ pub fn shares(weights: &[f64]) -> Vec<Share> {
         if *weight > 0.0 {
             sum += weight;
             after -= 1;
-            let share = (sum / total * f64::from(DRAWS)).round() as u32;
-            before = share.clamp(before + 1, DRAWS - after);
+            before = ((sum / total * f64::from(DRAWS)).round() as u32).clamp(before + 1, DRAWS - after);
         }
         before
     };
@@ -53,11 +52,14 @@ pub fn shares(weights: &[f64]) -> Vec<Share> {
             uppers.partition_point(|upper| *upper <= first).min(last) as u32
         })
     };
-    let share = |(index, upper): (usize, &u32)| Share {
-        upper: *upper,
-        guide: guide(index),
-    };
-    uppers.iter().enumerate().map(share).collect()
+    uppers
+        .iter()
+        .enumerate()
+        .map(|(index, upper)| Share {
+            upper: *upper,
+            guide: guide(index),
+        })
+        .collect()
 }
 
 /// A number's slot is the number without so many of its last bits.
@@ -107,6 +109,5 @@ pub fn drawn(index: u32, share: impl Fn(u32) -> Share) -> Drawn {
 /// number, because an entry of little weight has only few.
 pub fn place_in<T: Scalar>(drawn: Drawn, number: u32, jitter: T) -> T {
     let whole = |count: u32| T::from_f64(f64::from(count));
-    let numbers = whole((drawn.upper - drawn.lower).max(1));
-    ((whole(number - drawn.lower) + jitter) / numbers).min(T::ONE)
+    ((whole(number - drawn.lower) + jitter) / whole((drawn.upper - drawn.lower).max(1))).min(T::ONE)
 }

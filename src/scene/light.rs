@@ -10,7 +10,7 @@ use std::f64::consts::PI;
 
 use bytemuck::{Pod, Zeroable};
 
-use super::alias::{AliasEntry, alias_table, grid_place};
+use super::alias::{alias_table, grid_place};
 use super::environment::Environment;
 use super::geometry::Geometry;
 use super::intersect::triangle_normal;
@@ -79,15 +79,18 @@ impl Lights {
         let columns = (weights.len() as f64).sqrt().ceil() as usize;
         let rows = weights.len().div_ceil(columns);
         weights.resize(columns * rows, 0.0);
-        let filler = triangles[0];
-        let triangles = triangles.into_iter().chain(std::iter::repeat(filler));
-        let cell = |(entry, triangle): (AliasEntry, u32)| LightCell {
-            threshold: entry.threshold,
-            alias_index: entry.alias_index,
-            triangle,
-        };
+        let first = triangles[0];
+        let triangles = triangles.into_iter().chain(std::iter::repeat(first));
         Self {
-            cells: alias_table(&weights).into_iter().zip(triangles).map(cell).collect(),
+            cells: alias_table(&weights)
+                .into_iter()
+                .zip(triangles)
+                .map(|(entry, triangle)| LightCell {
+                    threshold: entry.threshold,
+                    alias_index: entry.alias_index,
+                    triangle,
+                })
+                .collect(),
             cells_size: [columns as u32, rows as u32],
             power,
         }
@@ -202,15 +205,17 @@ pub fn light_sample<T: Scalar>(
     let Emitters { geometry, lights, .. } = *emitters;
     let (drawn, [x, y]) = grid_place([xi.x, xi.y], lights.cells_size);
     let cell = lights.cells[drawn as usize];
-    let keep = xi.z.less(T::from_f64(f64::from(cell.threshold)));
-    let chosen = if keep { drawn } else { cell.alias_index };
+    let chosen = if xi.z.less(T::from_f64(f64::from(cell.threshold))) {
+        drawn
+    } else {
+        cell.alias_index
+    };
     let triangle = lights.cells[chosen as usize].triangle as usize;
     let [p0, p1, p2] = geometry.corners(triangle).map(Vec3::from_f32);
     // Uniform in area.
     let s = x.sqrt();
     let weights = [T::ONE - s, s * (T::ONE - y), s * y];
-    let place = p0 * weights[0] + p1 * weights[1] + p2 * weights[2];
-    let towards = place - origin;
+    let towards = p0 * weights[0] + p1 * weights[1] + p2 * weights[2] - origin;
     let distance = towards.length();
     let direction = normalize_or(towards, vec3(T::ZERO, T::ONE, T::ZERO));
     let normal = normalize_or(triangle_normal([p0, p1, p2]), direction);
@@ -231,8 +236,7 @@ pub fn light_sample<T: Scalar>(
         radiance = radiance * coat_over_emission(&coated, facing, facing.below_zero());
     }
     if material.has_flag(HAS_PROFILE) {
-        let table = &emitters.tables[material.lobe_table as usize..];
-        radiance = radiance * profile_share(table, -direction);
+        radiance = radiance * profile_share(&emitters.tables[material.lobe_table as usize..], -direction);
     }
     let cosine = normal.dot(direction).abs();
     let error = position_error([p0, p1, p2], weights, normal) + origin_error + T::from_f64(POSITION_ERROR) * distance;
@@ -273,6 +277,5 @@ pub const COSINE_MIN: f64 = 1e-6;
 /// distance.
 #[inline(always)]
 pub fn light_density<T: Real>(light_luminance: T, cosine: T, distance: T, density_per_luminance: T) -> T {
-    let per_area = density_per_luminance * light_luminance;
-    per_area * distance * distance / cosine.max(T::from_f64(COSINE_MIN))
+    density_per_luminance * light_luminance * distance * distance / cosine.max(T::from_f64(COSINE_MIN))
 }

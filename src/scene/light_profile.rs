@@ -6,8 +6,6 @@
 
 use std::f64::consts::PI;
 
-use glam::DVec3;
-
 use super::area_shape::AreaFrame;
 use crate::optics::prelude::*;
 
@@ -46,8 +44,11 @@ impl LightProfile {
         }
         let rows = rows_around(horizontal_deg)?;
         let (horizontal_deg, rows): (Vec<f32>, Vec<usize>) = rows.into_iter().unzip();
-        let row = |row: usize| &candela[row * count..(row + 1) * count];
-        let shares = rows.into_iter().flat_map(row).copied().collect();
+        let shares = rows
+            .into_iter()
+            .flat_map(|row| &candela[row * count..(row + 1) * count])
+            .copied()
+            .collect();
         let mut profile = Self {
             vertical_deg,
             horizontal_deg,
@@ -87,10 +88,8 @@ impl LightProfile {
         if angles.len() == 1 {
             return of_row(0);
         }
-        let cells = (1..angles.len()).map(|i| {
-            let width = f64::from(angles[i] - angles[i - 1]) / 360.0;
-            0.5 * width * (of_row(i - 1) + of_row(i))
-        });
+        let cells = (1..angles.len())
+            .map(|i| 0.5 * (f64::from(angles[i] - angles[i - 1]) / 360.0) * (of_row(i - 1) + of_row(i)));
         cells.sum()
     }
 
@@ -99,7 +98,7 @@ impl LightProfile {
         let counts = [self.vertical_deg.len(), self.horizontal_deg.len(), 0];
         let axes = [-frame.outwards, frame.across, frame.up];
         let mut table: Vec<f32> = std::iter::zip(axes, counts)
-            .flat_map(|(axis, count): (DVec3, usize)| {
+            .flat_map(|(axis, count)| {
                 let [x, y, z] = axis.to_array().map(|x| x as f32);
                 [x, y, z, count as f32]
             })
@@ -200,6 +199,5 @@ fn angle_cell<T: Scalar>(angles: &[f32], angle: T) -> (usize, T) {
             low = middle
         }
     }
-    let beyond = (angle - at(low)) / (at(high) - at(low));
-    (low, beyond.max(T::ZERO).min(T::ONE))
+    (low, ((angle - at(low)) / (at(high) - at(low))).max(T::ZERO).min(T::ONE))
 }

@@ -70,8 +70,10 @@ impl Loading {
     /// The items until cancelled: for long loops whose result is discarded then.
     pub fn while_wanted<I: Iterator>(&self, items: I) -> impl Iterator<Item = I::Item> {
         const BETWEEN: usize = 1 << 12;
-        let is_wanted = |(place, _): &(usize, I::Item)| place % BETWEEN != 0 || self.check().is_ok();
-        items.enumerate().take_while(is_wanted).map(|(_, item)| item)
+        items
+            .enumerate()
+            .take_while(|(place, _)| place % BETWEEN != 0 || self.check().is_ok())
+            .map(|(_, item)| item)
     }
 
     /// The source, failing once cancelled: it ends long reads and parsers.

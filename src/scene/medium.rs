@@ -16,9 +16,12 @@ const SURFACES_MAX: u32 = 256;
 /// The slot of the medium around a position, found by the transmitting surfaces along a ray out of it: the first back hit
 /// without its front before. `None` if no medium absorbs.
 pub fn medium_at(geometry: &Geometry, materials: &[Material<f32>], position: Vec3<f32>) -> Option<u32> {
-    let absorbs = |material: &Material<f32>| material.transmits() && material.absorption.is_any();
     let is_near = position.dot(position) < MODEL_RADIUS * MODEL_RADIUS;
-    if !is_near || !materials.iter().any(absorbs) {
+    if !is_near
+        || !materials
+            .iter()
+            .any(|material| material.transmits() && material.absorption.is_any())
+    {
         return None;
     }
     // In no likely plane or axis of a model.

@@ -1,8 +1,6 @@
 //! Models: sources, and the loaded mesh with material slots and texture maps.
 
-use std::fmt;
-use std::ops::Range;
-use std::path::PathBuf;
+use std::{fmt, ops::Range, path::PathBuf};
 
 use serde::{Deserialize, Serialize};
 
@@ -144,11 +142,12 @@ impl Model {
         if *source == ModelSource::StillLife {
             // Each part is an object, beside its slot.
             let parts = still_life::PARTS.iter().zip(still_life::triangles(&model.mesh));
-            let object = |(name, triangles): (&&str, Range<usize>)| ModelObject {
-                name: (*name).to_owned(),
-                triangles,
-            };
-            model.objects = parts.map(object).collect();
+            model.objects = parts
+                .map(|(name, triangles)| ModelObject {
+                    name: (*name).to_owned(),
+                    triangles,
+                })
+                .collect();
         }
         model.name_its_whole();
         Some(model)
@@ -177,8 +176,10 @@ impl Model {
         }));
         self.repeated.append(&mut other.repeated);
         for slot in &mut other.slots {
-            let references = slot.textures.iter_mut().flatten();
-            references.for_each(|reference| reference.texture += textures);
+            slot.textures
+                .iter_mut()
+                .flatten()
+                .for_each(|reference| reference.texture += textures);
         }
         let first = self.mesh.triangles.len();
         other.name_its_whole();
@@ -288,8 +289,10 @@ impl Slot {
 
     /// A colour of the file; black where it says none.
     pub fn color(&self, key: &str) -> [f32; 3] {
-        let found = self.values.iter().find(|(known, _)| *known == key);
-        found.map_or([0.0; 3], |(_, value)| *value)
+        self.values
+            .iter()
+            .find(|(known, _)| *known == key)
+            .map_or([0.0; 3], |(_, value)| *value)
     }
 
     /// A number of the file; 0 where it says none.
@@ -403,8 +406,12 @@ impl Texture {
     /// Largest value of a channel, in [0, 1]; 0 without texels.
     pub fn brightest(&self, channel: usize) -> f32 {
         fn largest<N: Copy + Ord + Into<f32>>(numbers: &[N], channel: usize) -> f32 {
-            let values = numbers.iter().skip(channel).step_by(4);
-            values.max().map_or(0.0, |largest| (*largest).into())
+            numbers
+                .iter()
+                .skip(channel)
+                .step_by(4)
+                .max()
+                .map_or(0.0, |largest| (*largest).into())
         }
         if self.rgba16.is_empty() {
             largest(&self.rgba8, channel) / 255.0

@@ -30,8 +30,11 @@ pub fn path_text(path: &Path) -> Cow<'_, str> {
         Some(text) if !text.starts_with(SCHEME) => text.into(),
         _ => {
             let whole = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
-            let bytes = whole.as_os_str().as_encoded_bytes();
-            format!("{SCHEME}{}", percent_encode(bytes, ENCODED)).into()
+            format!(
+                "{SCHEME}{}",
+                percent_encode(whole.as_os_str().as_encoded_bytes(), ENCODED)
+            )
+            .into()
         }
     }
 }
@@ -73,7 +76,9 @@ pub mod list {
 
     /// The paths of texts.
     pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<PathBuf>, D::Error> {
-        let texts = Vec::<String>::deserialize(from)?;
-        Ok(texts.iter().map(|text| path_of_text(text)).collect())
+        Ok(Vec::<String>::deserialize(from)?
+            .iter()
+            .map(|text| path_of_text(text))
+            .collect())
     }
 }

@@ -2,15 +2,15 @@
 
 use std::borrow::Cow;
 
-use super::mesh::Mesh;
-use super::model::{Model, ModelObject};
-use super::transform::transformed;
+use super::{mesh::Mesh, model::Model, transform::transformed};
 
 impl Model {
     /// Number of triangles, those of all instances included.
     pub fn triangle_count(&self) -> usize {
-        let instances = self.instances.iter();
-        let repeated = instances.map(|instance| self.repeated[instance.mesh].triangles.len());
+        let repeated = self
+            .instances
+            .iter()
+            .map(|instance| self.repeated[instance.mesh].triangles.len());
         self.mesh.triangles.len() + repeated.sum::<usize>()
     }
 
@@ -21,8 +21,10 @@ impl Model {
         }
         let mut whole = self.mesh.clone();
         for instance in &self.instances {
-            let mesh = self.repeated[instance.mesh].clone();
-            whole.append(transformed(mesh, instance.world_from_mesh));
+            whole.append(transformed(
+                self.repeated[instance.mesh].clone(),
+                instance.world_from_mesh,
+            ));
         }
         Cow::Owned(whole)
     }
@@ -35,8 +37,10 @@ impl Model {
     /// The number of the object that a triangle of the mesh belongs to.
     pub fn object_of(&self, triangle: usize) -> Option<usize> {
         let object = self.objects.partition_point(|object| object.triangles.end <= triangle);
-        let is_it = |found: &ModelObject| found.triangles.contains(&triangle);
-        self.objects.get(object).is_some_and(is_it).then_some(object)
+        self.objects
+            .get(object)
+            .is_some_and(|found| found.triangles.contains(&triangle))
+            .then_some(object)
     }
 
     /// The slots whose materials an object shows, each once.

@@ -108,8 +108,11 @@ impl ImportReport {
 
     /// Everything that is not shown as the file says, one line each.
     pub fn lines(&self) -> Vec<String> {
-        let entries = self.entries.iter().filter(|entry| entry.fate != Fate::Used);
-        entries.map(Entry::line).collect()
+        self.entries
+            .iter()
+            .filter(|entry| entry.fate != Fate::Used)
+            .map(Entry::line)
+            .collect()
     }
 
     /// One line about all deviations from the file; `None` without any.

@@ -49,8 +49,12 @@ impl Flat {
         let normal = self.half_v.cross(self.half_u).normalize_or(DVec3::Y).as_vec3();
         let tangent = self.half_u.normalize_or(DVec3::X).as_vec3().extend(1.0);
         let uv = (at.as_vec2() * uv_half_side + 1.0) * 0.5;
-        let place = self.center + at.x * self.half_u + at.y * self.half_v;
-        self.mesh.push_vertex(place, normal, uv, tangent)
+        self.mesh.push_vertex(
+            self.center + at.x * self.half_u + at.y * self.half_v,
+            normal,
+            uv,
+            tangent,
+        )
     }
 }
 
@@ -184,8 +188,7 @@ pub(super) fn bowl(slot: u32) -> Mesh {
     profile.arc(center, outer - wall, -90.0, lip_deg, 32);
     profile.arc(lip, 0.5 * wall, lip_deg + 180.0, lip_deg, 8);
     profile.arc(center, outer, lip_deg, -66.0, 24);
-    let joint = center + polar(outer, -66.0);
-    profile.line(dvec2(joint.x, 0.0), 2);
+    profile.line(dvec2((center + polar(outer, -66.0)).x, 0.0), 2);
     profile.line(DVec2::ZERO, 4);
     profile.revolve(BOWL_AROUND, slot)
 }
@@ -289,8 +292,10 @@ impl Profile {
     fn arc(&mut self, center: DVec2, radius: f64, from_deg: f64, to_deg: f64, steps: u32) {
         let side = if to_deg < from_deg { 1.0 } else { -1.0 };
         for step in 0..=steps {
-            let fraction = f64::from(step) / f64::from(steps);
-            let direction = polar(1.0, from_deg + (to_deg - from_deg) * fraction);
+            let direction = polar(
+                1.0,
+                from_deg + (to_deg - from_deg) * (f64::from(step) / f64::from(steps)),
+            );
             self.push(step, center + radius * direction, side * direction);
         }
     }
@@ -307,8 +312,11 @@ impl Profile {
     /// Step 0 of a piece has exactly the end position of the last piece, so that no crack opens. It is skipped if the normal
     /// is unchanged.
     fn push(&mut self, step: u32, place: DVec2, normal: DVec2) {
-        let on_axis = place.x.abs() < 1e-12;
-        let place = if on_axis { dvec2(0.0, place.y) } else { place };
+        let place = if place.x.abs() < 1e-12 {
+            dvec2(0.0, place.y)
+        } else {
+            place
+        };
         let place = if step == 0 { self.end } else { place };
         let continues = self
             .points

@@ -4,8 +4,7 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use super::mesh::Mesh;
-use super::{shapes, teapot};
+use super::{mesh::Mesh, shapes, teapot};
 
 /// The slots, which are the objects as well, from the largest on.
 pub(super) const PARTS: [&str; 4] = ["teapot", "bowl", "ball", "bead"];

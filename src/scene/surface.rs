@@ -48,78 +48,78 @@ pub struct Rounded<T> {
 }
 
 impl<T: Real> SurfacePoint<T> {
-    /// The normal of the triangle itself, on the side of the viewer.
-    #[inline(always)]
-    pub fn flat_normal(&self) -> Vec3<T> {
-        self.rounded.map_or(self.surface.normal, |rounded| rounded.flat)
-    }
+    inlined! {
+        /// The normal of the triangle itself, on the side of the viewer.
+        pub fn flat_normal(&self) -> Vec3<T> {
+            self.rounded.map_or(self.surface.normal, |rounded| rounded.flat)
+        }
 
-    /// Origin of a ray from the surface towards `wi`: outside the position's error bound, behind the surface only if it
-    /// `transmits`. A ray between the triangle's and the rounded surface's horizon starts on the latter.
-    #[inline(always)]
-    pub fn ray_origin(&self, wi: Vec3<T>, transmits: T::Mask) -> Vec3<T> {
-        let flat = self.flat_normal();
-        let is_below = flat.dot(wi).below_zero();
-        let origin = self.position + flat * T::select(transmits & is_below, -self.error, self.error);
-        match self.rounded {
-            None => origin,
-            Some(Rounded { rise, .. }) => Vec3::select(is_below, origin + rise, origin),
+        /// Origin of a ray from the surface towards `wi`: outside the position's error bound, behind the surface only if it
+        /// `transmits`. A ray between the triangle's and the rounded surface's horizon starts on the latter.
+        pub fn ray_origin(&self, wi: Vec3<T>, transmits: T::Mask) -> Vec3<T> {
+            let flat = self.flat_normal();
+            let is_below = flat.dot(wi).below_zero();
+            let origin = self.position + flat * T::select(transmits & is_below, -self.error, self.error);
+            match self.rounded {
+                None => origin,
+                Some(Rounded { rise, .. }) => Vec3::select(is_below, origin + rise, origin),
+            }
+        }
+
+        /// Uses the smooth normal's horizon instead of the triangle's, where the triangle lies below the surface that its
+        /// normals describe. So light on the round surface does not end at triangle edges. Source: Hanika, "Hacking the Shadow
+        /// Terminator", Ray Tracing Gems II (2021), chapter 4.
+        pub fn round(&mut self, geometry: &Geometry, hits: &Hits<T>) {
+            let weights = hit_weights::<T>(hits);
+            let corners = at_corners(hits, |triangle| geometry.corners(triangle));
+            let normals = at_corners(hits, |triangle| geometry.normals(triangle));
+            let flat = self.surface.normal;
+            let is_turned = between(&normals, &weights).dot(flat).below_zero();
+            let part = |i: usize| rise_to_plane(self.position, corners[i], normals[i], weights[i], is_turned);
+            let rise = part(0) + part(1) + part(2);
+            let is_round = self.error.less(rise.dot(flat));
+            self.surface.normal = Vec3::select(is_round, self.smooth, flat);
+            let rise = rise.masked(is_round);
+            self.rounded = Some(Rounded { flat, rise });
         }
     }
+}
 
-    /// Uses the smooth normal's horizon instead of the triangle's, where the triangle lies below the surface that its
-    /// normals describe. So light on the round surface does not end at triangle edges. Source: Hanika, "Hacking the Shadow
-    /// Terminator", Ray Tracing Gems II (2021), chapter 4.
-    #[inline(always)]
-    pub fn round(&mut self, geometry: &Geometry, hits: &Hits<T>) {
-        let weights = hit_weights::<T>(hits);
-        let corners = at_corners(hits, |triangle| geometry.corners(triangle));
-        let normals = at_corners(hits, |triangle| geometry.normals(triangle));
-        let flat = self.surface.normal;
-        let is_turned = between(&normals, &weights).dot(flat).below_zero();
-        let part = |i: usize| rise_to_plane(self.position, corners[i], normals[i], weights[i], is_turned);
-        let rise = part(0) + part(1) + part(2);
-        let is_round = self.error.less(rise.dot(flat));
-        self.surface.normal = Vec3::select(is_round, self.smooth, flat);
-        let rise = rise.masked(is_round);
-        self.rounded = Some(Rounded { flat, rise });
+inlined! {
+    /// Offset from a position in a triangle up to the tangent plane at a corner, if the position lies below it; times the
+    /// corner's weight. `is_turned`: the normal points away from the viewer.
+    pub fn rise_to_plane<T: Real>(
+        position: Vec3<T>,
+        corner: Vec3<T>,
+        normal: Vec3<T>,
+        weight: T,
+        is_turned: T::Mask,
+    ) -> Vec3<T> {
+        let depth = (corner - position).dot(normal);
+        normal * (T::select(is_turned, depth.min(T::ZERO), depth.max(T::ZERO)) * weight)
     }
-}
 
-/// Offset from a position in a triangle up to the tangent plane at a corner, if the position lies below it; times the
-/// corner's weight. `is_turned`: the normal points away from the viewer.
-#[inline(always)]
-pub fn rise_to_plane<T: Real>(
-    position: Vec3<T>,
-    corner: Vec3<T>,
-    normal: Vec3<T>,
-    weight: T,
-    is_turned: T::Mask,
-) -> Vec3<T> {
-    let depth = (corner - position).dot(normal);
-    let depth = T::select(is_turned, depth.min(T::ZERO), depth.max(T::ZERO));
-    normal * (depth * weight)
-}
+    /// The shading normal, bent towards the viewer if interpolation turned it away.
+    pub fn bent_normal<T: Real>(shading: Vec3<T>, wo: Vec3<T>) -> Vec3<T> {
+        let lean = shading.dot(wo);
+        let least = T::from_f64(VIEW_COSINE_MIN);
+        Vec3::select(
+            lean.less(least),
+            normalize_or(shading + wo * (least - lean), wo),
+            shading,
+        )
+    }
 
-/// The shading normal, bent towards the viewer if interpolation turned it away.
-#[inline(always)]
-pub fn bent_normal<T: Real>(shading: Vec3<T>, wo: Vec3<T>) -> Vec3<T> {
-    let lean = shading.dot(wo);
-    let least = T::from_f64(VIEW_COSINE_MIN);
-    let bent = normalize_or(shading + wo * (least - lean), wo);
-    Vec3::select(lean.less(least), bent, shading)
-}
-
-/// The normal, bent until its mirror direction is above the geometric surface. A lobe below the surface would be folded back
-/// to angles of less reflection than its albedo table assumes, and darken the surface. Source: Keller et al., "The Iray
-/// Light Transport Simulation and Rendering System" (2017), appendix A.3.
-#[inline(always)]
-pub fn lifted_normal<T: Real>(shading: Vec3<T>, geometric: Vec3<T>, wo: Vec3<T>) -> Vec3<T> {
-    let mirrored = wo.mirrored_about(shading);
-    let height = mirrored.dot(geometric);
-    let least = T::from_f64(MIRROR_HEIGHT_MIN);
-    let lifted = normalize_or(mirrored + geometric * (least - height), geometric);
-    Vec3::select(height.less(least), normalize_or(wo + lifted, geometric), shading)
+    /// The normal, bent until its mirror direction is above the geometric surface. A lobe below the surface would be folded back
+    /// to angles of less reflection than its albedo table assumes, and darken the surface. Source: Keller et al., "The Iray
+    /// Light Transport Simulation and Rendering System" (2017), appendix A.3.
+    pub fn lifted_normal<T: Real>(shading: Vec3<T>, geometric: Vec3<T>, wo: Vec3<T>) -> Vec3<T> {
+        let mirrored = wo.mirrored_about(shading);
+        let height = mirrored.dot(geometric);
+        let least = T::from_f64(MIRROR_HEIGHT_MIN);
+        let lifted = normalize_or(mirrored + geometric * (least - height), geometric);
+        Vec3::select(height.less(least), normalize_or(wo + lifted, geometric), shading)
+    }
 }
 
 /// Position of a hit.
@@ -138,46 +138,44 @@ pub struct HitPlace<T: Real> {
 /// Hits of a group of rays, one per lane.
 pub type Hits<T> = <T as Real>::Each<Hit>;
 
-/// The weights of the hit triangles' corners.
-#[inline(always)]
-fn hit_weights<T: Real>(hits: &Hits<T>) -> [T; 3] {
-    let number = |weight: f32| T::Scalar::from_f64(f64::from(weight));
-    let u = T::from_lanes(|lane| number(hits[lane].u));
-    let v = T::from_lanes(|lane| number(hits[lane].v));
-    [T::ONE - u - v, u, v]
-}
+inlined! {
+    /// The weights of the hit triangles' corners.
+    fn hit_weights<T: Real>(hits: &Hits<T>) -> [T; 3] {
+        let number = |weight: f32| T::Scalar::from_f64(f64::from(weight));
+        let u = T::from_lanes(|lane| number(hits[lane].u));
+        let v = T::from_lanes(|lane| number(hits[lane].v));
+        [T::ONE - u - v, u, v]
+    }
 
-/// Three vectors a triangle, one of each corner.
-#[inline(always)]
-fn at_corners<T: Real>(hits: &Hits<T>, vectors: impl Fn(usize) -> [[f32; 3]; 3]) -> [Vec3<T>; 3] {
-    let vectors = T::each(|lane| vectors(hits[lane].triangle as usize));
-    let vectors = vectors.as_ref();
-    [
-        Vec3::from_lanes(|lane| Vec3::from_f32(vectors[lane][0])),
-        Vec3::from_lanes(|lane| Vec3::from_f32(vectors[lane][1])),
-        Vec3::from_lanes(|lane| Vec3::from_f32(vectors[lane][2])),
-    ]
-}
+    /// Three vectors a triangle, one of each corner.
+    fn at_corners<T: Real>(hits: &Hits<T>, vectors: impl Fn(usize) -> [[f32; 3]; 3]) -> [Vec3<T>; 3] {
+        let vectors = T::each(|lane| vectors(hits[lane].triangle as usize));
+        let vectors = vectors.as_ref();
+        [
+            Vec3::from_lanes(|lane| Vec3::from_f32(vectors[lane][0])),
+            Vec3::from_lanes(|lane| Vec3::from_f32(vectors[lane][1])),
+            Vec3::from_lanes(|lane| Vec3::from_f32(vectors[lane][2])),
+        ]
+    }
 
-/// Barycentric interpolation between three corners.
-#[inline(always)]
-fn between<T: Real>(corners: &[Vec3<T>; 3], weights: &[T; 3]) -> Vec3<T> {
-    corners[0] * weights[0] + corners[1] * weights[1] + corners[2] * weights[2]
-}
+    /// Barycentric interpolation between three corners.
+    fn between<T: Real>(corners: &[Vec3<T>; 3], weights: &[T; 3]) -> Vec3<T> {
+        corners[0] * weights[0] + corners[1] * weights[1] + corners[2] * weights[2]
+    }
 
-/// Positions of hits; `direction` is the rays' unit direction.
-#[inline(always)]
-pub fn hit_place<T: Real>(geometry: &Geometry, hits: &Hits<T>, direction: Vec3<T>) -> HitPlace<T> {
-    let corners = at_corners(hits, |triangle| geometry.corners(triangle));
-    let weights = hit_weights::<T>(hits);
-    let out = normalize_or(triangle_normal(corners), -direction);
-    let is_back = out.dot(-direction).below_zero();
-    let normal = Vec3::select(is_back, -out, out);
-    HitPlace {
-        position: between(&corners, &weights),
-        error: position_error(corners, weights, normal),
-        normal,
-        is_back,
+    /// Positions of hits; `direction` is the rays' unit direction.
+    pub fn hit_place<T: Real>(geometry: &Geometry, hits: &Hits<T>, direction: Vec3<T>) -> HitPlace<T> {
+        let corners = at_corners(hits, |triangle| geometry.corners(triangle));
+        let weights = hit_weights::<T>(hits);
+        let out = normalize_or(triangle_normal(corners), -direction);
+        let is_back = out.dot(-direction).below_zero();
+        let normal = Vec3::select(is_back, -out, out);
+        HitPlace {
+            position: between(&corners, &weights),
+            error: position_error(corners, weights, normal),
+            normal,
+            is_back,
+        }
     }
 }
 
@@ -277,8 +275,7 @@ pub fn surfaces_at<T: Real>(
                 let (uvs, side) = (uvs[lane], sides[lane]);
                 mapped_normal(textures, (texture, strength), uvs, normals, side)
             });
-            let bent = bent_normal(Vec3::select(is_turned, -mapped, mapped), wo);
-            lifted_normal(bent, normal, wo)
+            lifted_normal(bent_normal(Vec3::select(is_turned, -mapped, mapped), wo), normal, wo)
         };
         shading = bent(of_lane.texture(TextureTarget::Normal), of_lane.normal_strength);
         coat_normal = bent(of_lane.texture(TextureTarget::CoatNormal), of_lane.coat_normal_strength);

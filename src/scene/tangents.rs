@@ -60,16 +60,18 @@ impl Mesh {
     /// texture coordinates gets any tangent.
     pub fn mikktspace_tangents(&mut self, texture_from_uv: [f32; 6]) {
         let [uu, uv, u1, vu, vv, v1] = texture_from_uv;
-        let in_texture = |at: &Vec2| Vec2::new(uu * at.x + uv * at.y + u1, vu * at.x + vv * at.y + v1);
         let mut corners = Corners {
-            uvs: self.uvs.iter().map(in_texture).collect(),
+            uvs: self
+                .uvs
+                .iter()
+                .map(|at| Vec2::new(uu * at.x + uv * at.y + u1, vu * at.x + vv * at.y + v1))
+                .collect(),
             tangents: vec![[None; 3]; self.triangles.len()],
             mesh: self,
         };
         // It cannot fail for any mesh.
         let _ = generate_tangents(&mut corners);
-        let tangents = corners.tangents;
-        self.take_corner_tangents(&tangents);
+        self.take_corner_tangents(&corners.tangents);
     }
 
     /// Sets vertex tangents from corners, splitting vertices whose corners differ.

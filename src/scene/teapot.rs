@@ -5,8 +5,7 @@
 //! at y = 2.4. Seen from outside, (u, v) of every patch is right-handed: u runs around the axis (of pot, lid, spout or
 //! handle), v along the profile.
 
-use std::collections::HashMap;
-use std::sync::LazyLock;
+use std::{collections::HashMap, sync::LazyLock};
 
 use glam::{DVec3, Vec2};
 
@@ -138,8 +137,11 @@ impl Grid {
         if dv.length() < 1e-9 {
             dv = if j == 0 { mixed } else { -mixed };
         }
-        let tangent = du.normalize_or(DVec3::X);
-        (self.position(patch, i, j), du.cross(dv).normalize_or(DVec3::Y), tangent)
+        (
+            self.position(patch, i, j),
+            du.cross(dv).normalize_or(DVec3::Y),
+            du.normalize_or(DVec3::X),
+        )
     }
 
     /// The position. On a border it is computed from the border's own control points, in an order independent of the patch,
@@ -163,8 +165,7 @@ impl Grid {
         if [b, c, d] == [a; 3] {
             return a; // A pole.
         }
-        let backwards = (a.to_array(), b.to_array()) > (d.to_array(), c.to_array());
-        if backwards {
+        if (a.to_array(), b.to_array()) > (d.to_array(), c.to_array()) {
             combine(&self.bases[self.segments - i].value, &[d, c, b, a])
         } else {
             combine(&self.bases[i].value, points)

@@ -60,7 +60,7 @@ const CASES: [(&str, &str); 13] = [
     ),
     (
         "fuzz.weight=1 fuzz.roughness=0.15 specular.weight=0 base.color=0,0,0",
-        "fuzz.roughness=0.09",
+        "fuzz.roughness=0.4",
     ),
     (
         "fuzz.weight=1 fuzz.roughness=0.5 specular.weight=0 base.color=0,0,0",
@@ -72,7 +72,7 @@ const CASES: [(&str, &str); 13] = [
     ),
     (
         "fuzz.weight=1 fuzz.roughness=0.5 specular.roughness=0.4",
-        "fuzz.roughness=0.4",
+        "fuzz.roughness=0.1",
     ),
 ];
 

@@ -167,6 +167,8 @@ fn twin_constants() -> Vec<(String, Vec<f64>)> {
 const WITHOUT_TWIN: &[&str] = &[
     "ANY",
     "NO_HIT",
+    "UPWARDS",
+    "WHITE",
     "STACK_SIZE",
     "EXTENT_MAX",
     "CATCHER_MISS",

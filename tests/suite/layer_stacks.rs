@@ -84,7 +84,10 @@ fn a_tint_leaves_what_goes_through() {
     };
     let [_, plain] = through(GLASS, "1,1,1");
     let [reflected, transmitted] = through(GLASS, "0,0,0");
-    assert!(reflected < 1e-6 && (transmitted - plain).abs() < 4e-3, "{transmitted} for {plain}");
+    assert!(
+        reflected < 1e-6 && (transmitted - plain).abs() < 4e-3,
+        "{transmitted} for {plain}"
+    );
     let [under_black, _] = through(white, "0,0,0");
     assert!((under_black - plain).abs() < 4e-3, "{under_black} for {plain}");
 }

@@ -13,8 +13,8 @@ use glossmith::job::film::Film;
 use glossmith::job::plan::Plan;
 use glossmith::job::{Job, Settings};
 use glossmith::optics::material::{
-    COAT_ABSORBS, COAT_IS_GGX, COMPENSATES, HAS_BOX, HAS_PROFILE, Material, NO_TEXTURE, SPARES_METAL, VERTEX_BASE,
-    VERTEX_EMISSION, VERTEX_OPACITY,
+    COAT_ABSORBS, COAT_IS_GGX, COMPENSATES, HAS_BOX, HAS_PROFILE, Material, NO_TEXTURE, OVER_AZIMUTH, SPARES_METAL,
+    VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY,
 };
 use glossmith::optics::vector::Vec3;
 use glossmith::render::{EngineChoice, Session};
@@ -94,7 +94,7 @@ fn take_out(effect: &str, value: u32, settings: &mut Settings, materials: &mut [
         "fuzz-texture" => |material, _| plain(material, On::OF_FUZZ),
         "box-projection" => |material, _| material.flags &= !HAS_BOX,
         "diffuse-roughness" => |material, _| material.diffuse_roughness = 0.0,
-        "rough-tables" => |material, _| material.has_rough_tables = 0,
+        "rough-tables" => |material, _| material.has_rough_tables &= OVER_AZIMUTH,
         "alpha" => |material, _| {
             (material.opacity, material.alpha_cutoff) = (1.0, -1.0);
             plain(material, &[On::Opacity]);

@@ -275,10 +275,7 @@ const WHITE: [(&str, f64); 30] = [
     ),
     ("transmission.weight=1 specular.lobe=ggx specular.roughness=0.6", 5e-3),
     ("transmission.weight=0.5 specular.roughness=0.6", 3e-3),
-    (
-        "transmission.weight=1 specular.roughness=0.3 specular.weight=0.5",
-        3e-3,
-    ),
+    ("transmission.weight=1 specular.roughness=0.3 specular.weight=0.5", 3e-3),
     ("base.metalness=0.5 transmission.weight=1 specular.roughness=0.3", 5e-3),
     ("base.metalness=0 coat.weight=1 coat.roughness=0", 3e-3),
     (

@@ -12,14 +12,12 @@ const ALONE: &[(&str, &[&str])] = &[
     (
         "reads an array that is bound to the pass; in Rust it is a slice or a field",
         &[
-            "environment_cell",
             "material_at",
             "node_words",
             "slot_at",
             "table_number",
             "table_numbers",
             "texel_at",
-            "texture_word",
             "three_texels",
             "vertex_at",
         ],
@@ -30,7 +28,6 @@ const ALONE: &[(&str, &[&str])] = &[
             "compensates",
             "has_rows",
             "has_vertex_flag",
-            "looks_up_textures",
             "planned",
             "shows_film",
             "transmits_anywhere",
@@ -62,7 +59,7 @@ const ALONE: &[(&str, &[&str])] = &[
     ),
     (
         "finds layers by number; Rust walks over their types (src/optics/layer/mod.rs)",
-        &["is_layer", "last_layer", "layer_choice", "planned_layer"],
+        &["is_layer", "layer_choice", "planned_layer"],
     ),
 ];
 

@@ -197,7 +197,7 @@ fn ctrl_shift_and_a_click_explain_the_pixel() {
     harness.run_steps(2);
     assert!(harness.has("Path trace of this pixel"));
     let told = |text: &str| harness.query_by_label_contains(text).is_some();
-    assert!(told("camera") && told("bounce 0") && told("contribution"));
+    assert!(told("camera      from") && told("bounce 0") && told("contribution"));
     assert_eq!(harness.document(), &before, "nothing is edited");
     harness.tap_label("Close");
     assert!(!harness.has("Path trace of this pixel"));

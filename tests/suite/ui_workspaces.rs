@@ -55,11 +55,6 @@ fn the_window_begins_with_looks_and_measures_where_that_is_asked_for() {
     for pane in [Pane::Convergence, Pane::Race, Pane::Inspector] {
         assert!(harness.query_all_by_label(pane.title()).next().is_some(), "{pane:?}");
     }
-    harness.reveal(Pane::Camera);
-    harness.set("Bounces", 1.0);
-    settle(&mut harness);
-    assert!(has(&harness, " % beyond 1 bounce"), "what the last bounce cuts off");
-    undo(&mut harness);
     use_workspace(&mut harness, LOOK);
     assert!(!has(&harness, "samples/s"));
     assert_eq!(*harness.document(), before, "workspaces are no edit");

@@ -12,11 +12,9 @@ fn custom_distance(table: u32, xi: f32) -> f32 {
     let interval = table_numbers(table, low);
     let width = interval.w * (1.0 / f32(CUSTOM_INTERVALS));
     let left = interval.y;
-    let right = interval.z;
     let missing = max(xi - interval.x, 0.0);
-    let root = safe_sqrt(left * left + 2.0 * (right - left) / width * missing);
-    let step = 2.0 * missing / max(left + root, 1e-12);
-    return width * f32(low) + min(step, width);
+    let root = safe_sqrt(left * left + 2.0 * (interval.z - left) / width * missing);
+    return width * f32(low) + min(2.0 * missing / max(left + root, 1e-12), width);
 }
 
 fn custom_distance_max(table: u32) -> f32 {
@@ -24,13 +22,9 @@ fn custom_distance_max(table: u32) -> f32 {
 }
 
 fn custom_h(table: u32, distance: f32) -> f32 {
-    return custom_density(table, distance) / max(distance, 1e-6);
-}
-
-fn custom_density(table: u32, distance: f32) -> f32 {
     let position = clamp(distance / custom_distance_max(table) * f32(CUSTOM_INTERVALS), 0.0, f32(CUSTOM_INTERVALS));
     let low = min(floor(position), f32(CUSTOM_INTERVALS) - 1.0);
     let interval = table_numbers(table, u32(low));
     let fraction = position - low;
-    return interval.y * (1.0 - fraction) + interval.z * fraction;
+    return (interval.y * (1.0 - fraction) + interval.z * fraction) / max(distance, 1e-6);
 }

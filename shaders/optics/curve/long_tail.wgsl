@@ -5,8 +5,7 @@
 fn long_tail_distance(table: u32, xi: f32) -> f32 {
     // 1 - sqrt(xi) = (1 - xi)/(1 + sqrt(xi)): stays above zero for the largest number below 1.
     let root = sqrt(xi);
-    let complement = max((1.0 - xi) / (1.0 + root), 2.9802322e-8);
-    return select(-log(complement), -log1p(-root), root < 0.5);
+    return select(-log(max((1.0 - xi) / (1.0 + root), 2.9802322e-8)), -log1p(-root), root < 0.5);
 }
 
 fn long_tail_h(table: u32, distance: f32) -> f32 {

@@ -16,8 +16,7 @@ fn base_albedo(material: Material, surface: Surface, left: vec3f) -> vec3f {
 
 fn base_toward(material: Material, layers: Layers, surface: Surface, wi: vec3f) -> LayerToward {
     var color = layers.base.albedo;
-    if PLAN_DIFFUSE_ROUGHNESS && material.diffuse_roughness > 0.0
-        && !is_within(material, surface) {
+    if PLAN_DIFFUSE_ROUGHNESS && material.diffuse_roughness > 0.0 && !is_within(material, surface) {
         let cosines = vec2f(dot(surface.frame.normal, surface.wo), dot(surface.frame.normal, wi));
         color *= rough_diffuse(material.base_color, material.diffuse_roughness, cosines, dot(surface.wo, wi));
     }
@@ -38,10 +37,8 @@ fn base_refined_sample(material: Material, surface: Surface, xi: vec3f, drawn: L
     let normal = surface.frame.normal;
     let wide = normalize_or(normal + uniform_sphere(xi.xy), normal);
     let cosine = dot(normal, wide);
-    let height = safe_sqrt(1.0 - spread * spread * (1.0 - cosine * cosine));
-    let raw = wide * spread + normal * (height - spread * cosine);
-    let depth = dot(surface.normal, raw);
-    return LobeSample(select(raw, raw - surface.normal * (2.0 * depth), depth < 0.0), 1.0);
+    let raw = wide * spread + normal * (safe_sqrt(1.0 - spread * spread * (1.0 - cosine * cosine)) - spread * cosine);
+    return LobeSample(select(raw, reflected_at_plane(raw, surface.normal), dot(surface.normal, raw) < 0.0), 1.0);
 }
 
 fn base_refined(material: Material, surface: Surface, wi: vec3f, evaluated: vec2f) -> vec2f {
@@ -52,21 +49,16 @@ fn base_refined(material: Material, surface: Surface, wi: vec3f, evaluated: vec2
     let above = dot(surface.normal, wi);
     let leaning = dot(surface.frame.normal, wi);
     let folded = leaning - 2.0 * above * dot(surface.frame.normal, surface.normal);
-    let both = narrow_density(leaning, spread) + narrow_density(folded, spread);
-    return vec2f(select(0.0, both, above > 0.0));
+    return vec2f(select(0.0, narrow_density(leaning, spread) + narrow_density(folded, spread), above > 0.0));
 }
 
 // The sine of the widest angle to which the base scatters: 1 but from within.
 fn base_spread(material: Material, surface: Surface) -> f32 {
-    if !PLAN_TRANSMISSION {
-        return 1.0;
-    }
     return select(1.0, material_ior_ahead(material, true), is_within(material, surface));
 }
 
 // The density of Lambert's lobe with its sines multiplied by spread.
 fn narrow_density(cosine: f32, spread: f32) -> f32 {
     let square = spread * spread;
-    let is_in_cone = 1.0 - cosine * cosine < square * BASE_EDGE;
-    return select(0.0, cosine * INV_PI / square, cosine > 0.0 && is_in_cone);
+    return select(0.0, cosine * INV_PI / square, cosine > 0.0 && 1.0 - cosine * cosine < square * BASE_EDGE);
 }

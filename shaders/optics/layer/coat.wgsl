@@ -28,24 +28,22 @@ fn coat_shape(material: Material) -> LobeShape {
 
 fn coat_albedo(material: Material, surface: Surface) -> LayerAlbedo {
     let cosine = dot(surface.coat_normal, surface.wo);
-    var share = material.coat_weight;
+    var row = 0.0;
     if PLAN_COAT_TEXTURES && material.coat_roughness_texture != NO_TEXTURE {
-        share *= rough_albedo_lookup(material.coat_table, cosine, material.coat_roughness).x;
+        row = material.coat_roughness;
     } else if PLAN_ANISOTROPY && material.coat_anisotropy != 0.0 {
-        let row = azimuth_place(material.coat_anisotropy, coat_frame(material, surface), surface.wo);
-        share *= rough_albedo_lookup(material.coat_table, cosine, row).x;
-    } else {
-        share *= albedo_lookup(material.coat_table, cosine).x;
+        row = azimuth_place(material.coat_anisotropy, coat_frame(material, surface), surface.wo);
     }
-    let color = select(material.coat_color, vec3f(1.0), has_flag(material, COATS_BASE));
-    var transmittance = mix(vec3f(1.0), color, material.coat_weight) * max(1.0 - share, 0.0);
+    let share = material.coat_weight * rough_albedo_lookup(material.coat_table, cosine, row).x;
+    let color = select(material.coat_color, WHITE, has_flag(material, COATS_BASE));
+    var transmittance = mix(WHITE, color, material.coat_weight) * max(1.0 - share, 0.0);
     if PLAN_COAT_DARKENING && material.coat_darkening > 0.0 {
         transmittance *= darkened(material, surface, cosine);
     }
     return LayerAlbedo(vec3f(share), transmittance);
 }
 
-fn coat_refined_sample(material: Material, surface: Surface, xi: vec3f, drawn: LobeSample) -> LobeSample {
+fn coat_refined_sample(material: Material, surface: Surface, drawn: LobeSample) -> LobeSample {
     return LobeSample(drawn.wi, coat_fresnel(material, surface.wo, drawn.wi) * drawn.weight);
 }
 
@@ -67,22 +65,20 @@ fn darkened(material: Material, surface: Surface, cosine: f32) -> vec3f {
     }
     let base = fresnel(terms, 1.0) + (1.0 - dielectric) * deeper * (1.0 - material.metalness);
     let rough = material.ggx_roughness;
-    let of_gloss = mix(1.0, rough, min(luminance(dielectric), 1.0));
-    let spread = mix(of_gloss, rough, material.metalness);
-    let smooth_share = fresnel_dielectric(cosine, material.coat_ior);
-    let inner = min(mix(smooth_share, material.coat_inner, spread), INNER_MAX);
-    let kept = vec3f(1.0 - inner) / (1.0 - min(base, vec3f(1.0)) * inner);
-    return mix(vec3f(1.0), kept, material.coat_weight * material.coat_darkening);
+    let spread = mix(mix(1.0, rough, min(luminance(dielectric), 1.0)), rough, material.metalness);
+    let inner = min(mix(fresnel_dielectric(cosine, material.coat_ior), material.coat_inner, spread), INNER_MAX);
+    let kept = vec3f(1.0 - inner) / (1.0 - min(base, WHITE) * inner);
+    return mix(WHITE, kept, material.coat_weight * material.coat_darkening);
 }
 
 // What the coat's medium leaves of the light of a layer below, by its directions.
 fn coat_tint(material: Material, layers: Layers, surface: Surface, wi: vec3f) -> vec3f {
     if !has_flag(material, COAT_ABSORBS) || !coat_is_there(material, surface) {
-        return vec3f(1.0);
+        return WHITE;
     }
     let reflected = layers.coat.albedo.x;
     let share = max(material.coat_weight - reflected, 0.0) / max(1.0 - reflected, 1e-9);
     let out = dot(surface.coat_normal, surface.wo);
     let back = select(abs(dot(surface.coat_normal, wi)), out, dot(surface.normal, wi) < 0.0);
-    return mix(vec3f(1.0), color_over(material, way_length(material, out) + way_length(material, back)), share);
+    return mix(WHITE, color_over(material, way_length(material, out) + way_length(material, back)), share);
 }

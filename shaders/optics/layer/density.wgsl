@@ -10,9 +10,7 @@ fn material_density(material: Material, surface: Surface, layers: Layers, wi: ve
             continue;
         }
         let toward = layer_toward(layer, material, layers, surface, lobe.shape, wi);
-        let of_lobe = lobe_evaluate(lobe.shape, lobe.frame, surface.normal, surface.wo, wi);
-        let evaluated = layer_refined(layer, material, surface, wi, of_lobe);
-        density += lobe.share.reached * toward.probability * evaluated.y;
+        density += lobe.share.reached * toward.probability * layer_refined(layer, material, surface, lobe, wi).y;
     }
     return density;
 }

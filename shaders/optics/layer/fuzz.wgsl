@@ -10,17 +10,16 @@ fn fuzz_albedo(material: Material, surface: Surface) -> LayerAlbedo {
     return LayerAlbedo(material.fuzz_color * share, vec3f(1.0 - share));
 }
 
-fn fuzz_refined_sample(material: Material, surface: Surface, xi: vec3f, drawn: LobeSample) -> LobeSample {
+fn fuzz_refined_sample(material: Material, surface: Surface, xi: vec3f) -> LobeSample {
     let frame = fuzz_frame(surface);
     let bent_by = fuzz_matrix(material, dot(frame.normal, surface.wo));
     let cosine = local_from_world(frame, normalize_or(frame.normal + uniform_sphere(xi.xy), frame.normal));
     let bent = vec3f((cosine.x - bent_by.y * cosine.z) / bent_by.x, cosine.y / bent_by.x, cosine.z);
-    let raw = world_from_local(frame, normalize_or(bent, vec3f(0.0, 0.0, 1.0)));
-    let depth = dot(surface.normal, raw);
-    return LobeSample(select(raw, raw - surface.normal * (2.0 * depth), depth < 0.0), 1.0);
+    let raw = world_from_local(frame, normalize_or(bent, UPWARDS));
+    return LobeSample(select(raw, reflected_at_plane(raw, surface.normal), dot(surface.normal, raw) < 0.0), 1.0);
 }
 
-fn fuzz_refined(material: Material, surface: Surface, wi: vec3f, evaluated: vec2f) -> vec2f {
+fn fuzz_refined(material: Material, surface: Surface, wi: vec3f) -> vec2f {
     let frame = fuzz_frame(surface);
     let bent_by = fuzz_matrix(material, dot(frame.normal, surface.wo));
     let folded = reflected_at_plane(wi, surface.normal);
@@ -54,6 +53,5 @@ fn fuzz_reflectance(material: Material, cosine: f32) -> f32 {
     let width = y * (0.0206607 + 1.58491 * y) / (0.0379424 + y * (1.32227 + y));
     let floor_y = y * (0.000654023 + (-0.0207818 + 0.119681 * y) * y) / (1.26264 + y * (-1.92021 + y));
     let off = (saturate(cosine) - middle) / width;
-    let bell = exp(-0.5 * off * off) / (width * sqrt(2.0 * PI));
-    return saturate(bell + floor_y);
+    return saturate(exp(-0.5 * off * off) / (width * sqrt(2.0 * PI)) + floor_y);
 }

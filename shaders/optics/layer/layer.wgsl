@@ -34,12 +34,8 @@ struct LayerChoice {
 
 // Sampling probability of a cover with this albedo, and its luminance plus that of everything after it (`below`).
 fn cover_choose(albedo: vec3f, below: f32) -> vec2f {
-    let reflected = max(max(albedo.x, albedo.y), albedo.z);
+    let reflected = max_component(albedo);
     let rest = (1.0 - reflected) * below;
-    return vec2f(cover_probability(reflected, rest), reflected + rest);
-}
-
-fn cover_probability(reflected: f32, rest: f32) -> f32 {
-    let probability = sampled_share(reflected / max(reflected + rest, 1e-9));
-    return select(0.0, select(1.0, probability, rest > 0.0), reflected > 0.0);
+    let share = sampled_share(reflected / max(reflected + rest, 1e-9));
+    return vec2f(select(0.0, select(1.0, share, rest > 0.0), reflected > 0.0), reflected + rest);
 }

@@ -23,14 +23,10 @@ fn planned_layer(place: u32) -> u32 {
     return firstTrailingBit(left);
 }
 
-fn last_layer() -> u32 {
-    return firstLeadingBit(planned_layers());
-}
-
 // Finds the layer of a number. The last planned layer stands for every other number: drivers compute all branches, and with
 // one kind of lobe planned no second one.
 fn is_layer(layer: u32, number: u32) -> bool {
-    return layer == number || last_layer() == number;
+    return layer == number || firstLeadingBit(planned_layers()) == number;
 }
 
 // A layer at a surface point.
@@ -53,7 +49,7 @@ fn layer_toward(
     layer: u32, material: Material, layers: Layers, surface: Surface, shape: LobeShape, wi: vec3f,
 ) -> LayerToward {
     if PLAN_FUZZ && is_layer(layer, LAYER_FUZZ) { return LayerToward(layers.fuzz.albedo, layers.fuzz.probability); }
-    if PLAN_COAT && is_layer(layer, LAYER_COAT) { return LayerToward(vec3f(1.0), layers.coat.probability); }
+    if PLAN_COAT && is_layer(layer, LAYER_COAT) { return LayerToward(WHITE, layers.coat.probability); }
     if PLAN_SPECULAR && is_layer(layer, LAYER_SPECULAR) { return specular_toward(material, layers, surface, shape, wi); }
     if PLAN_BASE && is_layer(layer, LAYER_BASE) { return base_toward(material, layers, surface, wi); }
     if PLAN_TRANSMISSION && is_layer(layer, LAYER_TRANSMISSION) {
@@ -63,14 +59,15 @@ fn layer_toward(
 }
 
 fn layer_refined_sample(layer: u32, material: Material, surface: Surface, xi: vec3f, drawn: LobeSample) -> LobeSample {
-    if PLAN_FUZZ && layer == LAYER_FUZZ { return fuzz_refined_sample(material, surface, xi, drawn); }
-    if PLAN_COAT && layer == LAYER_COAT { return coat_refined_sample(material, surface, xi, drawn); }
+    if PLAN_FUZZ && layer == LAYER_FUZZ { return fuzz_refined_sample(material, surface, xi); }
+    if PLAN_COAT && layer == LAYER_COAT { return coat_refined_sample(material, surface, drawn); }
     if PLAN_BASE && layer == LAYER_BASE { return base_refined_sample(material, surface, xi, drawn); }
     return drawn;
 }
 
-fn layer_refined(layer: u32, material: Material, surface: Surface, wi: vec3f, evaluated: vec2f) -> vec2f {
-    if PLAN_FUZZ && layer == LAYER_FUZZ { return fuzz_refined(material, surface, wi, evaluated); }
+fn layer_refined(layer: u32, material: Material, surface: Surface, lobe: LayerLobe, wi: vec3f) -> vec2f {
+    let evaluated = lobe_evaluate(lobe.shape, lobe.frame, surface.normal, surface.wo, wi);
+    if PLAN_FUZZ && layer == LAYER_FUZZ { return fuzz_refined(material, surface, wi); }
     if PLAN_COAT && layer == LAYER_COAT { return coat_refined(material, surface, wi, evaluated); }
     if PLAN_BASE && layer == LAYER_BASE { return base_refined(material, surface, wi, evaluated); }
     return evaluated;
@@ -101,15 +98,15 @@ fn layer_chance(layer: u32, layers: Layers) -> f32 {
 }
 
 fn material_layers(material: Material, surface: Surface) -> Layers {
-    let nothing = LayerShare(vec3f(), 0.0, vec3f(1.0), 1.0);
+    let nothing = LayerShare(vec3f(), 0.0, WHITE, 1.0);
     var layers = Layers(nothing, nothing, nothing, nothing, nothing);
-    if PLAN_FUZZ && fuzz_is_there(material, surface) {
+    if fuzz_is_there(material, surface) {
         let albedo = fuzz_albedo(material, surface);
         layers.fuzz.albedo = albedo.reflected;
         layers.coat.transmittance = albedo.transmittance;
     }
     var below = layers.coat;
-    if PLAN_COAT && coat_is_there(material, surface) {
+    if coat_is_there(material, surface) {
         let albedo = coat_albedo(material, surface);
         layers.coat.albedo = albedo.reflected;
         below.transmittance *= albedo.transmittance;
@@ -117,16 +114,16 @@ fn material_layers(material: Material, surface: Surface) -> Layers {
     layers.specular = below;
     layers.base = below;
     layers.transmission = below;
-    var left = vec3f(1.0);
-    if PLAN_SPECULAR && material_has_specular(material) {
+    var left = WHITE;
+    if material_has_specular(material) {
         let albedo = specular_albedo(material, surface);
         layers.specular.albedo = albedo.reflected;
         left = albedo.transmittance;
     }
-    if PLAN_BASE && material_has_base(material) {
+    if material_has_base(material) {
         layers.base.albedo = base_albedo(material, surface, left);
     }
-    if PLAN_TRANSMISSION && material_transmits(material) {
+    if material_transmits(material) {
         layers.transmission.albedo = transmission_albedo(material, surface, left);
     }
     var below_specular = luminance(layers.base.albedo);
@@ -159,10 +156,10 @@ fn material_albedo(material: Material, surface: Surface, layers: Layers) -> vec3
 
 fn material_normal(material: Material, surface: Surface, layers: Layers) -> vec3f {
     var normal = surface.frame.normal;
-    if PLAN_COAT && coat_is_there(material, surface) {
+    if coat_is_there(material, surface) {
         normal = mix(normal, surface.coat_normal, layers.coat.probability);
     }
-    if PLAN_FUZZ && fuzz_is_there(material, surface) {
+    if fuzz_is_there(material, surface) {
         normal = mix(normal, surface.frame.normal, layers.fuzz.probability);
     }
     return normal;

@@ -106,8 +106,7 @@ fn material_scatter(
         }
         var evaluated = vec2f();
         if !draws || (needs_density && !mirror) {
-            let of_lobe = lobe_evaluate(lobe.shape, lobe.frame, surface.normal, surface.wo, wi);
-            evaluated = layer_refined(layer, material, surface, wi, of_lobe);
+            evaluated = layer_refined(layer, material, surface, lobe, wi);
         }
         var color = toward.color * share.transmittance;
         if PLAN_COAT_ABSORPTION && layer > LAYER_COAT {

@@ -19,15 +19,15 @@ fn specular_toward(material: Material, layers: Layers, surface: Surface, shape: 
 }
 
 fn specular_choose(material: Material, layers: ptr<function, Layers>, below: f32) -> f32 {
-    let specular = luminance((*layers).specular.albedo);
+    let specular = luminance(layers.specular.albedo);
     var share = sampled_share(specular / max(specular + below, 1e-9));
     share = select(1.0, share, below > 0.0);
     // The part passed on is exactly the part not reflected, no estimate.
     share = select(share, min(specular, 1.0), passes_on(material));
     let through = (1.0 - share) * (transmission_estimate(material, *layers) / max(below, 1e-9));
-    (*layers).specular.probability = share;
-    (*layers).transmission.probability = through;
-    (*layers).base.probability = 1.0 - share - through;
+    layers.specular.probability = share;
+    layers.transmission.probability = through;
+    layers.base.probability = 1.0 - share - through;
     return select(f32(material_has_specular(material)), specular + below, has_more(material));
 }
 
@@ -35,17 +35,15 @@ fn specular_seen_albedo(material: Material, surface: Surface, share: LayerShare)
     if !material_has_specular(material) || has_more(material) {
         return share.albedo;
     }
-    let cosine = dot(surface.frame.normal, surface.wo);
-    return fresnel(material_fresnel_terms(material, surface.is_inside), cosine);
+    return fresnel(material_fresnel_terms(material, surface.is_inside), dot(surface.frame.normal, surface.wo));
 }
 
 fn specular_pass_on(material: Material, layers: ptr<function, Layers>, weight: f32, probability: f32) -> bool {
     if shares_facets(material) {
-        (*layers).transmission.probability = 1.0 - (*layers).base.probability - probability;
+        layers.transmission.probability = 1.0 - layers.base.probability - probability;
     }
     let is_passed_on = passes_on(material);
-    let is_lost = is_passed_on && !(weight > 0.0);
-    (*layers).specular.probability = select(probability, 0.0, is_lost);
+    layers.specular.probability = select(probability, 0.0, is_passed_on && !(weight > 0.0));
     return is_passed_on;
 }
 
@@ -61,26 +59,21 @@ fn specular_albedos(material: Material, surface: Surface) -> mat2x3f {
         first = material.inner_albedo_table;
     }
     let terms = material_fresnel_terms(material, surface.is_inside);
-    var mean = vec3f();
-    if has_rows(material) {
-        let row = table_row(material, surface);
-        var integrals = rough_albedo_lookup(first, place, row);
-        mean = integrals.xyz;
-        if first == material.albedo_table && PLAN_COAT_TEXTURES && has_coated_table(material) {
-            integrals.x = dielectric_under_coat(material, vec2f(place, row), integrals.x);
-        }
-        if holds_integrals(material) {
-            var film = vec4f();
-            if PLAN_THIN_FILM && has_film_table(material) {
-                film = vec4f(rough_albedo_lookup(first + ROUGH_ALBEDO_LENGTH, place, row).xyz, 1.0);
-            }
-            let below = of_dielectric(untinted(terms));
-            return mat2x3f(rough_albedo(terms, integrals, film), rough_albedo(below, integrals, film));
-        }
-    } else {
-        mean = albedo_lookup(first, place);
+    let row = table_row(material, surface);
+    var integrals = rough_albedo_lookup(first, place, row);
+    if !holds_integrals(material) {
+        let mean = integrals.xyz;
+        return mat2x3f(mean * select(WHITE, terms.tint, terms.model == FRESNEL_DIELECTRIC), mean);
     }
-    return mat2x3f(mean * select(vec3f(1.0), terms.tint, terms.model == FRESNEL_DIELECTRIC), mean);
+    if first == material.albedo_table && PLAN_COAT_TEXTURES && has_coated_table(material) {
+        integrals.x = dielectric_under_coat(material, vec2f(place, row), integrals.x);
+    }
+    var film = vec4f();
+    if PLAN_THIN_FILM && has_film_table(material) {
+        film = vec4f(rough_albedo_lookup(first + ROUGH_ALBEDO_LENGTH, place, row).xyz, 1.0);
+    }
+    let below = of_dielectric(untinted(terms));
+    return mat2x3f(rough_albedo(terms, integrals, film), rough_albedo(below, integrals, film));
 }
 
 // The dielectric's integral where a texture varies the coat over it.
@@ -104,8 +97,7 @@ fn specular_probability(material: Material, layers: Layers, surface: Surface, wi
     let ior = material_ior_ahead(material, surface.is_inside);
     let cosine = half_vector_cosine(surface.wo, wi);
     let square = refracted_square(cosine, ior);
-    let left = left_by_facet(material, surface, vec2f(cosine, sqrt(max(square, 0.0)) / ior));
+    let left = left_by_facet(material, surface, vec2f(cosine, safe_sqrt(square) / ior));
     // Total reflection leaves nothing to refract, whichever Fresnel model is used.
-    let refracted = select(0.0, luminance(left), square > 0.0);
-    return (1.0 - layers.base.probability) * mirrored_share(reflected, refracted);
+    return (1.0 - layers.base.probability) * mirrored_share(reflected, select(0.0, luminance(left), square > 0.0));
 }

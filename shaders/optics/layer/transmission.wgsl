@@ -7,11 +7,9 @@
 fn transmission_albedo(material: Material, surface: Surface, left_by_specular: vec3f) -> vec3f {
     var left = left_by_specular;
     if !bends(material) {
-        let gain = interface_gain(material, surface, material_shape(material));
-        left = max(1.0 - (1.0 - left) * gain, vec3f());
+        left = max(1.0 - (1.0 - left) * interface_gain(material, surface, material_shape(material)), vec3f());
     }
-    let left_by_metal = left * (1.0 - material.metalness);
-    return material.transmission_tint * left_by_metal * material.transmission_weight;
+    return material.transmission_tint * (left * (1.0 - material.metalness)) * material.transmission_weight;
 }
 
 fn transmission_toward(
@@ -22,19 +20,18 @@ fn transmission_toward(
         return toward;
     }
     let cosines = refracting_cosines(surface.wo, wi, shape.eta);
-    let straight = toward.color;
-    toward.color = left_by_facet(material, surface, cosines);
+    let left = left_by_facet(material, surface, cosines);
     if shares_facets(material) {
         let reflected = luminance(fresnel(material_fresnel_terms(material, surface.is_inside), cosines.x));
-        let share = 1.0 - mirrored_share(reflected, luminance(toward.color));
-        toward.probability = (1.0 - layers.base.probability) * share;
+        toward.probability = (1.0 - layers.base.probability) * (1.0 - mirrored_share(reflected, luminance(left)));
     }
-    toward.color = select(straight, toward.color * interface_gain(material, surface, shape), bends(material));
+    if bends(material) {
+        toward.color = left * interface_gain(material, surface, shape);
+    }
     return toward;
 }
 
 fn transmission_estimate(material: Material, layers: Layers) -> f32 {
-    let mean = luminance(layers.transmission.albedo);
     let is_apart = material_transmits(material) && material.transmission_roughness != material.roughness;
-    return select(mean, max(mean, APART_LEAST), is_apart);
+    return max(luminance(layers.transmission.albedo), select(0.0, APART_LEAST, is_apart));
 }

@@ -35,7 +35,7 @@ fn geometric_density(shape: LobeShape, frame: Frame, wo: vec3f, wi: vec3f) -> f3
         let light_length = length(light);
         mirror /= stretch;
         light /= light_length;
-        normal = vec3f(0.0, 0.0, 1.0);
+        normal = UPWARDS;
         factor = 1.0 / (width.x * width.y * width.z * light_length * light_length * light_length);
     }
     let density = chord_density(shape.curve, shape.table, shape.roughness, stretch, normal, mirror, light) * factor;

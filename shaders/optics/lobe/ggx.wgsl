@@ -4,12 +4,10 @@
 fn ggx_sample(shape: LobeShape, frame: Frame, wo_world: vec3f, xi: vec3f) -> vec3f {
     let alpha = microfacet_alpha(shape);
     let wo = local_from_world(frame, wo_world);
-    let stretched = normalize_or(vec3f(wo.xy * alpha, wo.z), vec3f(0.0, 0.0, 1.0));
+    let stretched = normalize_or(vec3f(wo.xy * alpha, wo.z), UPWARDS);
     let z = (1.0 - xi.y) * (1.0 + stretched.z) - stretched.z;
-    let sine = safe_sqrt(1.0 - z * z);
-    let cap = vec3f(sine * unit_circle(xi.x), z) + stretched;
-    let h = normalize_or(vec3f(cap.xy * alpha, max(cap.z, 0.0)), vec3f(0.0, 0.0, 1.0));
-    return world_from_local(frame, mirrored_about(wo, h));
+    let cap = vec3f(safe_sqrt(1.0 - z * z) * unit_circle(xi.x), z) + stretched;
+    return world_from_local(frame, mirrored_about(wo, normalize_or(vec3f(cap.xy * alpha, max(cap.z, 0.0)), UPWARDS)));
 }
 
 fn ggx_density(shape: LobeShape, frame: Frame, wo: vec3f, wi: vec3f) -> f32 {

@@ -96,19 +96,18 @@ struct LobeView {
 }
 
 fn lobe_view(shape: LobeShape, frame: Frame, surface_normal: vec3f, wo: vec3f) -> LobeView {
-    if shape.eta == 0.0 {
-        return LobeView(frame, surface_normal, wo, shape.roughness);
-    }
+    var view = LobeView(frame, surface_normal, wo, shape.roughness);
     if refracts_at_facets(shape) {
-        return LobeView(frame, -surface_normal, wo, shape.roughness);
+        view.normal = -surface_normal;
+    } else if shape.eta != 0.0 {
+        let behind = refracted(wo, frame.normal, shape.eta);
+        if !behind.is_total {
+            let turned = Frame(frame.tangent, -frame.bitangent, -frame.normal);
+            let roughness = refracting_roughness(shape.lobe, shape.roughness, shape.eta);
+            view = LobeView(turned, -surface_normal, mirrored_about(behind.wi, frame.normal), roughness);
+        }
     }
-    let behind = refracted(wo, frame.normal, shape.eta);
-    if behind.is_total {
-        return LobeView(frame, surface_normal, wo, shape.roughness);
-    }
-    let turned = Frame(frame.tangent, -frame.bitangent, -frame.normal);
-    let roughness = refracting_roughness(shape.lobe, shape.roughness, shape.eta);
-    return LobeView(turned, -surface_normal, mirrored_about(behind.wi, frame.normal), roughness);
+    return view;
 }
 
 fn seen_lobe(shape: LobeShape, view: LobeView) -> LobeShape {
@@ -125,8 +124,8 @@ fn lobe_sample(shape: LobeShape, frame: Frame, surface_normal: vec3f, wo: vec3f,
     if refracts_at_facets(shape) {
         let behind = facet_refracted(wo, raw, shape.eta);
         raw = behind.wi;
-        let mirrored = facet_mirror(frame, wo, raw, shape.eta);
-        weight = select(facet_weight(shape, frame, wo, raw, mirrored), 0.0, behind.is_total);
+        weight = facet_weight(shape, frame, wo, raw, facet_mirror(frame, wo, raw, shape.eta));
+        weight = select(weight, 0.0, behind.is_total);
     } else {
         weight = raw_weight(seen, view.frame, view.wo, raw);
         if is_hemispherical(shape.lobe) {
@@ -134,14 +133,13 @@ fn lobe_sample(shape: LobeShape, frame: Frame, surface_normal: vec3f, wo: vec3f,
         }
     }
     let below = dot(view.normal, raw) < 0.0;
-    switch shape.horizon {
-        case HORIZON_MIRROR: {
-            let turned = reflected_at_plane(raw, view.normal);
-            return LobeSample(select(raw, turned, below && weight > 0.0), weight);
-        }
-        case HORIZON_ABSORB: { return LobeSample(raw, select(weight, 0.0, below)); }
-        default: { return LobeSample(raw, weight); }
+    if below && shape.horizon == HORIZON_ABSORB {
+        weight = 0.0;
     }
+    if below && shape.horizon == HORIZON_MIRROR && weight > 0.0 {
+        raw = reflected_at_plane(raw, view.normal);
+    }
+    return LobeSample(raw, weight);
 }
 
 // (evaluate, density), the cosine included.
@@ -153,8 +151,7 @@ fn lobe_evaluate(shape: LobeShape, frame: Frame, surface_normal: vec3f, wo: vec3
     // A loop, so that the lobes' code is there once: drivers inline, and compile in more than proportion to the size.
     var result = vec2f();
     var direction = wi;
-    let count = select(1u, 2u, shape.horizon == HORIZON_MIRROR);
-    for (var i = 0u; i < count; i++) {
+    for (var i = 0u; i < select(1u, 2u, shape.horizon == HORIZON_MIRROR); i++) {
         result += raw_evaluate(shape, view, direction);
         direction = reflected_at_plane(wi, view.normal);
     }
@@ -167,9 +164,8 @@ fn raw_evaluate(shape: LobeShape, view: LobeView, wi: vec3f) -> vec2f {
     var factor = 1.0;
     let at_facets = refracts_at_facets(shape);
     if at_facets {
-        let along = refracting_normal(view.wo, wi, shape.eta);
         mirrored = facet_mirror(view.frame, view.wo, wi, shape.eta);
-        factor = facet_density_factor(view.frame, view.wo, wi, shape.eta, along);
+        factor = facet_density_factor(view.frame, view.wo, wi, shape.eta, refracting_normal(view.wo, wi, shape.eta));
         if !(factor > 0.0) {
             return vec2f();
         }

@@ -8,10 +8,8 @@ fn phong_exponent(roughness: f32) -> f32 {
 
 fn phong_sample(shape: LobeShape, frame: Frame, wo: vec3f, xi: vec3f) -> vec3f {
     let power = log(1.0 - xi.x) / (phong_exponent(shape.roughness) + 1.0);
-    let cosine = exp(power);
-    let sine = safe_sqrt(-expm1(2.0 * power));
     let around_mirror = frame_from_normal(mirrored_about(wo, frame.normal));
-    return world_from_local(around_mirror, vec3f(sine * unit_circle(xi.y), cosine));
+    return world_from_local(around_mirror, vec3f(safe_sqrt(-expm1(2.0 * power)) * unit_circle(xi.y), exp(power)));
 }
 
 fn phong_density(shape: LobeShape, frame: Frame, wo: vec3f, wi: vec3f) -> f32 {
@@ -20,8 +18,7 @@ fn phong_density(shape: LobeShape, frame: Frame, wo: vec3f, wi: vec3f) -> f32 {
     let versine = 0.5 * dot(apart, apart);
     let in_lobe = versine < 1.0;
     let n = phong_exponent(shape.roughness);
-    let power = exp(n * log1p(-select(0.0, versine, in_lobe)));
-    return select(0.0, (n + 1.0) * (0.5 * INV_PI) * power, in_lobe);
+    return select(0.0, (n + 1.0) * (0.5 * INV_PI) * exp(n * log1p(-select(0.0, versine, in_lobe))), in_lobe);
 }
 
 fn phong_weight(shape: LobeShape, frame: Frame, wo: vec3f, wi: vec3f) -> f32 {

@@ -301,11 +301,7 @@ impl App {
             Purpose::SaveProject if is_picture(&path) => self.want_picture(Destination::File(path)),
             Purpose::SaveProject => self.save_project(as_json(path, KIND)),
             Purpose::SaveMaterial => self.save_material(as_json(path, "")),
-            Purpose::Export => {
-                if let Some(format) = self.taken(exchange::by_ending(&path)) {
-                    self.prepare_export(path, format);
-                }
-            }
+            Purpose::Export => self.prepare_export(path),
             Purpose::SaveLayers => self.worker.make_layers(path.with_extension("exr")),
             Purpose::SaveWindow => self.window_picture = Some(path.with_extension("png")),
             Purpose::QueuePicture => self.enqueue(Task::Picture {

@@ -17,6 +17,7 @@ use crate::render::{
     output::{self, Layers},
     worker::Activity,
 };
+use crate::scene::path_text::file_name;
 use crate::store::{
     exchange::{self, Registered, Subject, report::Outcome},
     picture::png_bytes,
@@ -137,12 +138,16 @@ impl App {
 
     /// Makes the file beside the window, to be shown before it is written: of a format that takes a model all of it, else
     /// the selected material; or the preset that was chosen.
-    pub fn prepare_export(&mut self, path: PathBuf, format: &'static Registered) {
-        let preset = self.files.exported.clone();
+    pub fn prepare_export(&mut self, path: PathBuf) {
+        let Some(format) = self.taken(exchange::by_ending(&path)) else {
+            return;
+        };
+        let preset = self.files.exported.take();
         let takes_model = format.takes_models() && preset.is_none();
         let material = preset.unwrap_or_else(|| self.desk_material());
         let name = material.name.clone();
-        self.export.ask(path.clone(), format);
+        let file = file_name(&path);
+        self.note(format!("{file}: rendering balls to show what it loses …"));
         let subject = if takes_model {
             Subject {
                 materials: self.document.materials.clone(),
@@ -156,7 +161,7 @@ impl App {
             let ready = ready(&subject, &name, &path, format);
             finish(move |app, ctx| {
                 let ready = app.taken(ready);
-                app.export.put(ctx, &path, format, ready);
+                ready.into_iter().for_each(|ready| app.export.ask(ctx, ready));
                 true
             })
         });
@@ -181,14 +186,15 @@ impl App {
 
     /// Shows what is lost, and writes where that was agreed to.
     pub fn show_export(&mut self, ctx: &egui::Context) {
-        match self.export.show(ctx) {
-            Some(Answer::As(path, format)) => self.prepare_export(path, format),
-            Some(Answer::Write(prepared)) => self.write(move || {
-                prepared.save().map_err(crate::in_words)?;
-                Ok(Entry::done_with("Exported", &prepared.report.output, ""))
-            }),
-            None => {}
-        }
+        let Some(answer) = self.export.show(ctx) else { return };
+        let prepared = self.export.take();
+        let Some(prepared) = prepared.filter(|_| answer == Answer::Write) else {
+            return;
+        };
+        self.write(move || {
+            prepared.save().map_err(crate::in_words)?;
+            Ok(Entry::done_with("Exported", &prepared.report.output, ""))
+        });
     }
 }
 

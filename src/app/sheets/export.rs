@@ -1,15 +1,13 @@
 //! The sheet that shows what another program's file loses, before it is written.
 
-use std::path::Path;
-
 use super::*;
 use crate::app::book::EXPORT;
 use crate::app::kit::tile::rgb_pixels;
 use crate::app::services::export::Ready;
 use crate::app::sheets::{answers, book, question, scrolled};
 use crate::render::looks::Compared;
+use crate::store::exchange::Prepared;
 use crate::store::exchange::report::{MaterialReport, Outcome};
-use crate::store::exchange::{FORMATS, Prepared, Registered, by_name};
 
 /// Points that the side of an image takes.
 const PICTURE: f32 = 176.0;
@@ -19,37 +17,18 @@ const PICTURES: [&str; 3] = ["The material", "As the file shows it", "Difference
 /// The sheet, while there is something to ask.
 #[derive(Default)]
 pub struct ExportSheet {
-    /// The file, until there is an answer.
-    asked: Option<(PathBuf, &'static Registered)>,
-    /// `None` until the balls are rendered.
     ready: Option<Ready>,
     textures: Vec<Option<[TextureHandle; 3]>>,
 }
 
+#[derive(PartialEq)]
 pub enum Answer {
-    Write(Box<Prepared>),
-    /// Another format, and the file in it.
-    As(PathBuf, &'static Registered),
+    Write,
+    Cancel,
 }
 
 impl ExportSheet {
-    /// Opens the sheet.
-    pub fn ask(&mut self, path: PathBuf, format: &'static Registered) {
-        *self = Self {
-            asked: Some((path, format)),
-            ..Self::default()
-        };
-    }
-
-    /// Takes the file that was made; none closes the sheet. What was called off meanwhile is left out.
-    pub fn put(&mut self, ctx: &Context, path: &Path, format: &Registered, ready: Option<Ready>) {
-        let is_asked = |asked: &(PathBuf, &Registered)| asked.0 == path && asked.1.name == format.name;
-        if !self.asked.as_ref().is_some_and(is_asked) {
-            return;
-        }
-        let Some(ready) = ready else {
-            return *self = Self::default();
-        };
+    pub fn ask(&mut self, ctx: &Context, ready: Ready) {
         let texture = |(name, picture): (&&str, &image::RgbImage)| {
             ctx.load_texture(*name, rgb_pixels(picture), TextureOptions::LINEAR)
         };
@@ -63,45 +42,32 @@ impl ExportSheet {
     }
 
     pub fn is_open(&self) -> bool {
-        self.asked.is_some()
+        self.ready.is_some()
     }
 
-    /// Shows the sheet where it is open, and closes it with an answer.
-    pub fn show(&mut self, ctx: &Context) -> Option<Answer> {
-        let (path, format) = self.asked.as_ref()?;
-        let mut chosen = format.name;
-        let is_written = question(ctx, "export", false, |ui| {
+    /// The file, to be written; the sheet is closed.
+    pub fn take(&mut self) -> Option<Prepared> {
+        self.textures.clear();
+        Some(self.ready.take()?.prepared)
+    }
+
+    /// Shows the sheet where it is open.
+    pub fn show(&self, ctx: &Context) -> Option<Answer> {
+        let ready = self.ready.as_ref()?;
+        question(ctx, "export", Answer::Cancel, |ui| {
             ui.set_width(580.0);
             book::heading(ui, "Export", EXPORT);
-            ui.label(path.display().to_string());
-            let formats = FORMATS.iter().map(|format| (format.name, format.label, format.help));
-            let formats: Vec<_> = formats.collect();
-            widgets::row(ui, ["Export format", "Format", format.help], |ui| {
-                widgets::choice(ui, "export format", &mut chosen, &formats)
-            });
+            let report = &ready.prepared.report;
+            ui.label(report.output.display().to_string());
             ui.add_space(theme::GAP);
-            widgets::comes_and_goes(ui, |ui| match &self.ready {
-                Some(ready) => scrolled(ui, |ui| {
-                    for (material, textures) in ready.prepared.report.materials.iter().zip(&self.textures) {
-                        material_rows(ui, material, textures.as_ref());
-                    }
-                }),
-                None => {
-                    ui.spinner();
-                    ui.label("Rendering balls to show what it loses …");
+            scrolled(ui, |ui| {
+                for (material, textures) in report.materials.iter().zip(&self.textures) {
+                    material_rows(ui, material, textures.as_ref());
                 }
             });
             ui.add_space(theme::GAP);
-            let write = self.ready.as_ref().map(|_| ("Write the file", true));
-            answers(ui, write.into_iter().chain([("Cancel", false)]))
-        });
-        if chosen != format.name {
-            let format = by_name(chosen)?;
-            return Some(Answer::As(path.with_extension(format.extensions[0]), format));
-        }
-        let ready = is_written.and_then(|_| std::mem::take(self).ready);
-        let ready = ready.filter(|_| is_written == Some(true))?;
-        Some(Answer::Write(Box::new(ready.prepared)))
+            answers(ui, [("Write the file", Answer::Write), ("Cancel", Answer::Cancel)])
+        })
     }
 }
 
@@ -147,10 +113,7 @@ fn material_rows(ui: &mut Ui, material: &MaterialReport, textures: Option<&[Text
         );
     }
     if material.carries_exact_parameters {
-        widgets::note(
-            ui,
-            "Glossmith itself reads all of it back, textures by their paths: the exact parameters travel with it.",
-        );
+        widgets::note(ui, "The exact parameters travel with it: opened here, nothing is lost.");
     }
     ui.add_space(theme::GAP);
 }

@@ -73,6 +73,7 @@ fn plot(report: &ConvergenceReport) -> LinePlot {
         error("1/√t", 2, &law),
     ];
     if !report.denoised.is_empty() {
+        #[expect(clippy::type_complexity, reason = "a table")]
         let values: [(_, fn(&DenoisedPoint) -> f64); 3] = [
             ("denoised", |point| point.error),
             ("", |point| point.error_low),

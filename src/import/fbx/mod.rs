@@ -119,6 +119,7 @@ pub(super) fn load(path: &Path, files: &Files, bytes: &[u8], options: &ModelOpti
     loading.check()?;
     let at_rest = at_rest.map_err(|error| unread(path, import, &error))?;
     let animation = at_rest.anim_stacks.as_ref().first();
+    #[expect(clippy::result_large_err, reason = "the library's own error")]
     let posed = animation.zip(options.time_s).map(|(animation, time_s)| {
         let options = EvaluateOpts {
             temp_allocator: limited(import),

@@ -222,6 +222,7 @@ impl Reader<'_> {
     }
 
     /// Adds the morph targets to positions, normals and tangents.
+    #[expect(clippy::type_complexity, reason = "three slices")]
     fn morph(
         &self,
         weights: &[f32],

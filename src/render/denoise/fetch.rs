@@ -40,8 +40,8 @@ pub fn fetch() -> Result<(), String> {
     let found: Vec<PathBuf> = NEEDED
         .iter()
         .map(|name| {
-            let missing = || format!("the package {PACKAGE} has no {name} for this machine");
-            super::library::file_beginning_with(&there, name).ok_or_else(missing)
+            super::library::file_beginning_with(&there, name)
+                .ok_or_else(|| format!("the package {PACKAGE} has no {name} for this machine"))
         })
         .collect::<Result<_, _>>()?;
     for file in found {

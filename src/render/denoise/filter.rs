@@ -3,7 +3,8 @@
 use std::ffi::{CStr, c_int, c_void};
 use std::ptr;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::sync::atomic::AtomicBool;
+use std::sync::atomic::Ordering::Relaxed;
 
 use super::device_choice::{CPU, DenoiseDevice, kind_name};
 use super::functions::{Functions, Handle, message};
@@ -57,8 +58,9 @@ impl Device {
     pub fn of(functions: &'static Functions, choice: DenoiseDevice) -> Result<Self, LibraryError> {
         // SAFETY: the library is asked for its devices, and then for each of them by its number.
         let count = unsafe { (functions.get_num_physical_devices)() };
-        let kind = |id| unsafe { (functions.get_physical_device_int)(id, c"type".as_ptr()) };
-        let kinds: Vec<c_int> = (0..count).map(kind).collect();
+        let kinds: Vec<c_int> = (0..count)
+            .map(|id| unsafe { (functions.get_physical_device_int)(id, c"type".as_ptr()) })
+            .collect();
         let mut failure = LibraryError::Device("there is no device for it".to_owned());
         for place in choice.candidates(&kinds) {
             match Self::open(functions, place as c_int, kinds[place]) {
@@ -275,14 +277,14 @@ fn mirrored(place: usize, side: usize) -> usize {
 fn padded(pixels: &[[f32; 3]], [width, height]: [usize; 2]) -> Vec<[f32; 3]> {
     let [columns, rows] = padded_size([width, height]);
     let row = |y: usize| &pixels[mirrored(y, height) * width..][..width];
-    let rows = (0..rows).map(row);
-    rows.flat_map(|row| (0..columns).map(|x| row[mirrored(x, width)]))
+    (0..rows)
+        .map(row)
+        .flat_map(|row| (0..columns).map(|x| row[mirrored(x, width)]))
         .collect()
 }
 
 /// An image without its padding.
 fn cropped(pixels: &[[f32; 3]], [width, height]: [usize; 2]) -> Vec<[f32; 3]> {
-    let columns = width + 2 * BORDER;
-    let rows = pixels.chunks_exact(columns).skip(BORDER).take(height);
+    let rows = pixels.chunks_exact(width + 2 * BORDER).skip(BORDER).take(height);
     rows.flat_map(|row| &row[BORDER..BORDER + width]).copied().collect()
 }

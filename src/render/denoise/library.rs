@@ -58,8 +58,11 @@ impl Library {
                 }
             };
         }
-        let executable = std::env::current_exe().ok();
-        let beside = executable.as_deref().and_then(Path::parent).map(Path::to_owned);
+        let beside = std::env::current_exe()
+            .ok()
+            .as_deref()
+            .and_then(Path::parent)
+            .map(Path::to_owned);
         for folder in [beside, data_folder()].into_iter().flatten() {
             let path = folder.join(NAME);
             if path.exists() {
@@ -144,18 +147,22 @@ fn broken(path: &Path, error: &libloading::Error) -> LibraryError {
 
 /// The folder in which `scripts/setup` puts the library.
 pub fn data_folder() -> Option<PathBuf> {
-    let folders = directories::ProjectDirs::from("", "", "glossmith")?;
-    Some(folders.data_local_dir().join("denoiser"))
+    Some(
+        directories::ProjectDirs::from("", "", "glossmith")?
+            .data_local_dir()
+            .join("denoiser"),
+    )
 }
 
 /// The first file of a folder with a name prefix.
 pub fn file_beginning_with(folder: &Path, beginning: &str) -> Option<PathBuf> {
-    let entries = std::fs::read_dir(folder).ok()?;
-    let names = entries.filter_map(|entry| Some(entry.ok()?.path()));
-    let fits = |path: &PathBuf| {
-        path.file_name()
-            .and_then(OsStr::to_str)
-            .is_some_and(|name| name.starts_with(beginning))
-    };
-    names.filter(fits).min()
+    std::fs::read_dir(folder)
+        .ok()?
+        .filter_map(|entry| Some(entry.ok()?.path()))
+        .filter(|path| {
+            path.file_name()
+                .and_then(OsStr::to_str)
+                .is_some_and(|name| name.starts_with(beginning))
+        })
+        .min()
 }

@@ -136,8 +136,10 @@ impl Denoiser {
         let alpha = if alpha.iter().any(|alpha| *alpha < 1.0) {
             let grey: Colors = alpha.iter().map(|alpha| [*alpha; 3]).collect();
             let [albedo, normal] = &noisy.guides();
-            let alphas = denoise([&grey, albedo, normal], 1.0)?;
-            alphas.iter().map(|[alpha, ..]| alpha.clamp(0.0, 1.0)).collect()
+            denoise([&grey, albedo, normal], 1.0)?
+                .iter()
+                .map(|[alpha, ..]| alpha.clamp(0.0, 1.0))
+                .collect()
         } else {
             alpha
         };
@@ -147,8 +149,7 @@ impl Denoiser {
     }
 
     fn filter(&mut self, size: [usize; 2], quality: c_int) -> Result<&mut Filter, LibraryError> {
-        let known = self.filters.iter().position(|filter| filter.fits(size, quality));
-        let filter = match known {
+        let filter = match self.filters.iter().position(|filter| filter.fits(size, quality)) {
             Some(place) => self.filters.remove(place),
             None => {
                 self.filters.retain(|filter| filter.pixels() <= PIXELS_KEPT);
@@ -166,8 +167,7 @@ impl Denoiser {
         if width * height <= self.pixels_max {
             return self.denoise_band(images, size, how);
         }
-        let filter = self.filter([width, 1], how.quality)?;
-        let [overlap, alignment] = filter.overlap_and_alignment();
+        let [overlap, alignment] = self.filter([width, 1], how.quality)?.overlap_and_alignment();
         let rows = ((self.pixels_max / width).saturating_sub(2 * overlap) / alignment).max(1) * alignment;
         let mut denoised = Colors::with_capacity(width * height);
         for first in (0..height).step_by(rows) {

@@ -2,8 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::analysis::denoised::Colors;
-use crate::analysis::halves::Distance;
+use crate::analysis::{denoised::Colors, halves::Distance};
 use crate::job::film::{Film, Image, luminance};
 use crate::parallel;
 
@@ -45,8 +44,9 @@ impl Noisy {
     /// The same with the number of guide samples of each half, by pixel.
     pub fn of_samples(film: &Film, guide_samples: impl Fn(usize) -> [f64; 2] + Sync, region: Option<[f64; 4]>) -> Self {
         let [left, top, columns, rows] = rendered_rect(film, region);
-        let row = |y: usize| (left..left + columns).map(move |x| y * film.width as usize + x);
-        let pixels: Vec<usize> = (top..top + rows).flat_map(row).collect();
+        let pixels: Vec<usize> = (top..top + rows)
+            .flat_map(|y| (left..left + columns).map(move |x| y * film.width as usize + x))
+            .collect();
         let half = |number: usize| NoisyHalf::of(film, number, &|pixel| guide_samples(pixel)[number], &pixels);
         Self {
             image: Arc::new(film.image()),
@@ -60,11 +60,12 @@ impl Noisy {
     pub fn guides(&self) -> [Colors; 2] {
         let halves: Vec<&NoisyHalf> = self.halves.iter().flatten().collect();
         let mean = |of: fn(&NoisyHalf) -> &Colors| -> Colors {
-            let at = |pixel: usize| {
-                let sum = |c: usize| halves.iter().map(|half| of(half)[pixel][c]).sum::<f32>();
-                std::array::from_fn(|c| sum(c) / halves.len().max(1) as f32)
-            };
-            (0..self.pixels.len()).map(at).collect()
+            (0..self.pixels.len())
+                .map(|pixel| {
+                    let sum = |c: usize| halves.iter().map(|half| of(half)[pixel][c]).sum::<f32>();
+                    std::array::from_fn(|c| sum(c) / halves.len().max(1) as f32)
+                })
+                .collect()
         };
         [mean(|half| &half.albedo), mean(|half| &half.normal)]
     }

@@ -3,8 +3,7 @@
 use std::sync::Mutex;
 
 use super::{Engine, EngineChoice, EngineInfo, cpu, gpu};
-use crate::gpu::scatter::Scatterer;
-use crate::gpu::{AdapterKind, GpuAdapter, GpuDevice, GpuError, Traversal};
+use crate::gpu::{AdapterKind, GpuAdapter, GpuDevice, GpuError, Traversal, scatter::Scatterer};
 use crate::job::scatter::{ScatterCloud, ScatterRequest};
 use crate::named::named;
 use crate::panics::lock;
@@ -63,11 +62,12 @@ fn on_adapter(adapter: &GpuAdapter, why: &str) -> Result<(Engine, EngineInfo), G
 
 fn auto() -> (Engine, EngineInfo) {
     let hardware = GpuAdapter::find(AdapterKind::Hardware);
-    let opened = hardware.and_then(|adapter| on_adapter(&adapter, "a hardware GPU"));
-    opened.unwrap_or_else(|error| match error {
-        GpuError::NoAdapter(_) => cpu("no hardware GPU".to_owned()),
-        error => cpu(format!("the hardware GPU does not work: {error}")),
-    })
+    hardware
+        .and_then(|adapter| on_adapter(&adapter, "a hardware GPU"))
+        .unwrap_or_else(|error| match error {
+            GpuError::NoAdapter(_) => cpu("no hardware GPU".to_owned()),
+            error => cpu(format!("the hardware GPU does not work: {error}")),
+        })
 }
 
 /// Traversal on an adapter, with what there is to say about the choice. On software Vulkan, ray queries are slower than our

@@ -2,15 +2,11 @@
 
 pub mod choice;
 
-use std::fmt;
-use std::sync::Arc;
-use std::time::Duration;
+use std::{fmt, sync::Arc, time::Duration};
 
 use crate::cpu::CpuEngine;
 use crate::gpu::{GpuDevice, GpuEngine, GpuError, Traversal};
-use crate::job::Job;
-use crate::job::film::Film;
-use crate::job::tiles::Schedule;
+use crate::job::{Job, film::Film, tiles::Schedule};
 use crate::named::named;
 
 pub(crate) use choice::device_for_functions;

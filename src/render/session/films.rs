@@ -1,8 +1,6 @@
 //! Access to the rendered film.
 
-use std::borrow::Cow;
-use std::path::Path;
-use std::sync::Arc;
+use std::{borrow::Cow, path::Path, sync::Arc};
 
 use super::{Session, SessionError};
 use crate::document::Document;
@@ -70,8 +68,12 @@ impl Session {
     pub fn kept_film(&mut self) -> Result<KeptFilm, SessionError> {
         let samples = self.engine.schedule().samples_per_pixel();
         let document = self.document.as_deref().cloned().unwrap_or_default();
-        let units = self.world_units_per_unit();
-        Ok(KeptFilm::of(self.engine.film()?.clone(), document, samples, units))
+        Ok(KeptFilm::of(
+            self.engine.film()?.clone(),
+            document,
+            samples,
+            self.world_units_per_unit(),
+        ))
     }
 
     /// An image of the film as a frame, of a document whose size was divided by `reduction`.

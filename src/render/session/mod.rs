@@ -15,8 +15,7 @@ use super::progress::{Progress, StopReason};
 use super::workshop::Workshop;
 use crate::analysis::halves::Distance;
 use crate::compile::{self, Assets, Compiler, Reloaded};
-use crate::document::change::Change;
-use crate::document::{Denoise, Document, RenderSettings};
+use crate::document::{Denoise, Document, RenderSettings, change::Change};
 use crate::gpu::{GpuAdapter, GpuDevice, GpuError, Moment, Traversal};
 use crate::job::Job;
 use crate::job::effect::{Decision, EffectId};
@@ -379,8 +378,7 @@ impl Session {
     }
 
     fn time_limit(&self) -> Option<Duration> {
-        let seconds = self.settings().time_s?;
-        Some(Duration::from_secs_f64(seconds.clamp(0.0, 1e9)))
+        Some(Duration::from_secs_f64(self.settings().time_s?.clamp(0.0, 1e9)))
     }
 
     /// True if every tile has the samples of its round; on the CPU their number does not depend on time.

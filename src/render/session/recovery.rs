@@ -2,8 +2,7 @@
 
 use super::Session;
 use crate::gpu::{AdapterKind, GpuAdapter, GpuEngine, GpuError, Moment};
-use crate::job::film::Film;
-use crate::job::tiles::Schedule;
+use crate::job::{film::Film, tiles::Schedule};
 use crate::render::engine::{Engine, cpu};
 use crate::render::workshop::Workshop;
 

@@ -1,7 +1,8 @@
 //! The denoiser's thread. It takes the latest render to denoise and returns the result to the worker.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::sync::atomic::AtomicBool;
+use std::sync::atomic::Ordering::Relaxed;
 
 use crate::document::{Denoise, DenoiseWhen, Document};
 use crate::panics::caught;

@@ -334,14 +334,21 @@ impl Worker {
     /// The events since the last call.
     pub fn take_events(&self) -> Vec<Event> {
         let events = std::mem::take(&mut *lock(&self.shared.events));
-        let ends_opening = |event: &&Event| {
-            matches!(
-                event,
-                Event::ModelOpened(..) | Event::EnvironmentOpened(..) | Event::OpenFailed(..) | Event::Reloaded(..)
-            )
-        };
-        self.opening
-            .fetch_sub(events.iter().filter(ends_opening).count(), Relaxed);
+        self.opening.fetch_sub(
+            events
+                .iter()
+                .filter(|event| {
+                    matches!(
+                        event,
+                        Event::ModelOpened(..)
+                            | Event::EnvironmentOpened(..)
+                            | Event::OpenFailed(..)
+                            | Event::Reloaded(..)
+                    )
+                })
+                .count(),
+            Relaxed,
+        );
         events
     }
 

@@ -1,7 +1,6 @@
 //! What the window shows.
 
-use std::ops::Deref;
-use std::sync::Arc;
+use std::{ops::Deref, sync::Arc};
 
 use crate::document::{Document, ViewSettings};
 use crate::job::film::Image;

@@ -2,8 +2,7 @@
 
 use std::f32::consts::PI;
 
-use super::distribution::Luminances;
-use super::{environment_direction, environment_uv};
+use super::{distribution::Luminances, environment_direction, environment_uv};
 use crate::optics::vector::Vec3;
 
 /// Share of the peak brightness from which connected cells belong to the brightest region.

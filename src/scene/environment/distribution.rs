@@ -38,8 +38,7 @@ fn luminance(texel: &[f32; 4]) -> f64 {
 fn band_solid_angle(top: f64, bottom: f64, height: f64) -> f64 {
     let half_turn = PI / height;
     let middle_rad = 0.5 * (top + bottom) * half_turn;
-    let half_width_rad = 0.5 * (bottom - top) * half_turn;
-    2.0 * TAU * middle_rad.sin() * half_width_rad.sin()
+    2.0 * TAU * middle_rad.sin() * (0.5 * (bottom - top) * half_turn).sin()
 }
 
 /// Mean luminance of the bilinear map over each texel's cell of a row: neighbours along an axis weigh 1/8, 3/4, 1/8.
@@ -130,19 +129,24 @@ impl Distribution {
         let of_rows = parallel::map(height as usize, |row| {
             let luminances = luminances.cells[row * columns..][..columns].iter();
             let above: Vec<f64> = luminances.map(|luminance| (luminance - floor).max(0.0)).collect();
-            let weight = above.iter().sum::<f64>() * cell_solid_angle(row, width, height);
-            (shares(&above), weight)
+            (
+                shares(&above),
+                above.iter().sum::<f64>() * cell_solid_angle(row, width, height),
+            )
         });
         let (of_cells, weights): (Vec<Vec<Share>>, Vec<f64>) = of_rows.into_iter().unzip();
         let rows = shares(&weights);
         let of_rows = probabilities(&rows);
         let cells = parallel::map(height as usize, |row| {
             let (shares, density) = (&of_cells[row], of_rows[row] / cell_solid_angle(row, width, height));
-            let cell = |(share, probability): (&Share, f64)| Cell {
-                share: *share,
-                density: (density * probability) as f32,
-            };
-            shares.iter().zip(probabilities(shares)).map(cell).collect::<Vec<_>>()
+            shares
+                .iter()
+                .zip(probabilities(shares))
+                .map(|(share, probability)| Cell {
+                    share: *share,
+                    density: (density * probability) as f32,
+                })
+                .collect::<Vec<_>>()
         });
         Self {
             cells: in_large_pages(cells.concat()),
@@ -211,22 +215,28 @@ impl Luminances {
 
     /// Mean over the sphere of a function of the luminance.
     fn mean_of(&self, f: impl Fn(f64) -> f64) -> f64 {
-        let rows = self.cells.chunks(self.width as usize).enumerate();
-        let sum = |(row, cells): (usize, &[f64])| {
-            cells.iter().map(|luminance| f(*luminance)).sum::<f64>() * cell_solid_angle(row, self.width, self.height)
-        };
-        rows.map(sum).sum::<f64>() / (2.0 * TAU)
+        self.cells
+            .chunks(self.width as usize)
+            .enumerate()
+            .map(|(row, cells)| {
+                cells.iter().map(|luminance| f(*luminance)).sum::<f64>()
+                    * cell_solid_angle(row, self.width, self.height)
+            })
+            .sum::<f64>()
+            / (2.0 * TAU)
     }
 }
 
 /// The probability of each entry.
 fn probabilities(shares: &[Share]) -> Vec<f64> {
     let mut before = 0;
-    let probability = |share: &Share| {
-        let numbers = share.upper - std::mem::replace(&mut before, share.upper);
-        f64::from(numbers) / f64::from(1 << DRAW_BITS)
-    };
-    shares.iter().map(probability).collect()
+    shares
+        .iter()
+        .map(|share| {
+            let numbers = share.upper - std::mem::replace(&mut before, share.upper);
+            f64::from(numbers) / f64::from(1 << DRAW_BITS)
+        })
+        .collect()
 }
 
 /// Mean luminances of one row of cells, by area overlap with the texels' cells.
@@ -253,7 +263,9 @@ fn overlaps(index: u32, coarse: u32, fine: u32) -> impl Iterator<Item = (u32, f6
     let (coarse, fine) = (u64::from(coarse), u64::from(fine));
     let (begin, end) = (u64::from(index) * fine, (u64::from(index) + 1) * fine);
     (begin / coarse..end.div_ceil(coarse)).map(move |i| {
-        let covered = end.min((i + 1) * coarse) - begin.max(i * coarse);
-        (i as u32, covered as f64 / coarse as f64)
+        (
+            i as u32,
+            (end.min((i + 1) * coarse) - begin.max(i * coarse)) as f64 / coarse as f64,
+        )
     })
 }

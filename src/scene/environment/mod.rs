@@ -13,10 +13,7 @@ mod error;
 mod procedural;
 mod thumbnail;
 
-use std::fmt;
-use std::path::PathBuf;
-use std::str::FromStr;
-use std::sync::OnceLock;
+use std::{fmt, path::PathBuf, str::FromStr, sync::OnceLock};
 
 use serde::{Deserialize, Serialize};
 
@@ -246,43 +243,40 @@ impl Environment {
     }
 }
 
-/// Converts a world direction to the frame of the map, which is rotated about +Y, anticlockwise from above (+Z towards +X).
-/// `rotation` is the cosine and sine of the angle.
-#[inline(always)]
-pub fn environment_local_from_world<T: Real>(direction_world: Vec3<T>, rotation: [T; 2]) -> Vec3<T> {
-    let [cos, sin] = rotation;
-    let d = direction_world;
-    vec3(d.x * cos - d.z * sin, d.y, d.x * sin + d.z * cos)
-}
+inlined! {
+    /// Converts a world direction to the frame of the map, which is rotated about +Y, anticlockwise from above (+Z towards +X).
+    /// `rotation` is the cosine and sine of the angle.
+    pub fn environment_local_from_world<T: Real>(direction_world: Vec3<T>, rotation: [T; 2]) -> Vec3<T> {
+        let [cos, sin] = rotation;
+        let d = direction_world;
+        vec3(d.x * cos - d.z * sin, d.y, d.x * sin + d.z * cos)
+    }
 
-/// The inverse of [`environment_local_from_world`].
-#[inline(always)]
-pub fn environment_world_from_local<T: Real>(direction_local: Vec3<T>, rotation: [T; 2]) -> Vec3<T> {
-    let [cos, sin] = rotation;
-    let d = direction_local;
-    vec3(d.x * cos + d.z * sin, d.y, d.z * cos - d.x * sin)
-}
+    /// The inverse of [`environment_local_from_world`].
+    pub fn environment_world_from_local<T: Real>(direction_local: Vec3<T>, rotation: [T; 2]) -> Vec3<T> {
+        let [cos, sin] = rotation;
+        let d = direction_local;
+        vec3(d.x * cos + d.z * sin, d.y, d.z * cos - d.x * sin)
+    }
 
-/// Map coordinates of a unit direction: u in [0, 1), v in [0, 1]. At the poles u is 0.
-#[inline(always)]
-pub fn environment_uv<T: Real>(direction: Vec3<T>) -> [T; 2] {
-    // atan2 instead of acos: near the poles y rounds to 1, and only x and z determine the angle.
-    let horizontal = (direction.x * direction.x + direction.z * direction.z).sqrt();
-    let v = horizontal.atan2(direction.y) * T::FRAC_1_PI;
-    // atan2(0, 0) is undefined in WGSL.
-    let pole = !horizontal.above_zero();
-    let z = T::select(pole, -T::ONE, direction.z);
-    let turns = direction.x.atan2(-z) * T::from_f64(0.5 * std::f64::consts::FRAC_1_PI);
-    let u = T::select(turns.below_zero(), turns + T::ONE, turns);
-    // A tiny negative angle plus one turn rounds to a whole turn.
-    [u.masked(u.less(T::ONE)), v.clamp(T::ZERO, T::ONE)]
-}
+    /// Map coordinates of a unit direction: u in [0, 1), v in [0, 1]. At the poles u is 0.
+    pub fn environment_uv<T: Real>(direction: Vec3<T>) -> [T; 2] {
+        // atan2 instead of acos: near the poles y rounds to 1, and only x and z determine the angle.
+        let horizontal = (direction.x * direction.x + direction.z * direction.z).sqrt();
+        let v = horizontal.atan2(direction.y) * T::FRAC_1_PI;
+        // atan2(0, 0) is undefined in WGSL.
+        let z = T::select(!horizontal.above_zero(), -T::ONE, direction.z);
+        let turns = direction.x.atan2(-z) * T::from_f64(0.5 * std::f64::consts::FRAC_1_PI);
+        let u = T::select(turns.below_zero(), turns + T::ONE, turns);
+        // A tiny negative angle plus one turn rounds to a whole turn.
+        [u.masked(u.less(T::ONE)), v.clamp(T::ZERO, T::ONE)]
+    }
 
-/// The unit direction of a place in the map, the inverse of [`environment_uv`].
-#[inline(always)]
-pub fn environment_direction<T: Real>(uv: [T; 2]) -> Vec3<T> {
-    let polar_rad = uv[1] * T::from_f64(std::f64::consts::PI);
-    environment_direction_from_angles(uv[0], polar_rad.cos(), polar_rad.sin())
+    /// The unit direction of a place in the map, the inverse of [`environment_uv`].
+    pub fn environment_direction<T: Real>(uv: [T; 2]) -> Vec3<T> {
+        let polar_rad = uv[1] * T::from_f64(std::f64::consts::PI);
+        environment_direction_from_angles(uv[0], polar_rad.cos(), polar_rad.sin())
+    }
 }
 
 /// The unit direction to the centre of a texel.
@@ -291,44 +285,45 @@ pub fn texel_direction([column, row]: [u32; 2], [width, height]: [u32; 2]) -> Ve
     environment_direction([center(column, width), center(row, height)])
 }
 
-/// The unit direction at `u` turns of azimuth with the given cosine and sine of the angle to +Y.
-#[inline(always)]
-fn environment_direction_from_angles<T: Real>(u: T, cos_polar: T, sin_polar: T) -> Vec3<T> {
-    // Shifted by half a turn, so that the argument is in [−π, π], where GPUs guarantee accuracy.
-    let azimuth_rad = (u - T::HALF) * T::TAU;
-    vec3(
-        -(azimuth_rad.sin() * sin_polar),
-        cos_polar,
-        azimuth_rad.cos() * sin_polar,
-    )
-}
+inlined! {
+    /// The unit direction at `u` turns of azimuth with the given cosine and sine of the angle to +Y.
+    fn environment_direction_from_angles<T: Real>(u: T, cos_polar: T, sin_polar: T) -> Vec3<T> {
+        // Shifted by half a turn, so that the argument is in [−π, π], where GPUs guarantee accuracy.
+        let azimuth_rad = (u - T::HALF) * T::TAU;
+        vec3(
+            -(azimuth_rad.sin() * sin_polar),
+            cos_polar,
+            azimuth_rad.cos() * sin_polar,
+        )
+    }
 
-/// Radiance from a unit direction: bilinear, wrapping in u, clamped at the poles in v.
-#[inline(always)]
-pub fn environment_radiance<T: Real>(environment: &Environment, direction_local: Vec3<T>) -> Vec3<T> {
-    environment_radiance_at(environment, environment_uv(direction_local))
-}
+    /// Radiance from a unit direction: bilinear, wrapping in u, clamped at the poles in v.
+    pub fn environment_radiance<T: Real>(environment: &Environment, direction_local: Vec3<T>) -> Vec3<T> {
+        environment_radiance_at(environment, environment_uv(direction_local))
+    }
 
-/// The same at map coordinates ([`environment_uv`]).
-#[inline(always)]
-pub fn environment_radiance_at<T: Real>(environment: &Environment, uv: [T; 2]) -> Vec3<T> {
-    let Bilinear { texels, shares } = bilinear(environment, uv);
-    let [upper_left, upper_right, lower_left, lower_right] = &texels;
-    let upper = radiances(environment, upper_left).mix(radiances(environment, upper_right), shares[0]);
-    let lower = radiances(environment, lower_left).mix(radiances(environment, lower_right), shares[0]);
-    upper.mix(lower, shares[1])
-}
+    /// The same at map coordinates ([`environment_uv`]).
+    pub fn environment_radiance_at<T: Real>(environment: &Environment, uv: [T; 2]) -> Vec3<T> {
+        let Bilinear { texels, shares } = bilinear(environment, uv);
+        let [upper_left, upper_right, lower_left, lower_right] = &texels;
+        radiances(environment, upper_left)
+            .mix(radiances(environment, upper_right), shares[0])
+            .mix(
+                radiances(environment, lower_left).mix(radiances(environment, lower_right), shares[0]),
+                shares[1],
+            )
+    }
 
-/// The radiances of texels.
-#[inline(always)]
-fn radiances<T: Real>(environment: &Environment, texels: &T::Each<u32>) -> Vec3<T> {
-    let texel = |lane: usize| &environment.texels[texels[lane] as usize];
-    let number = |radiance: f32| T::Scalar::from_f64(f64::from(radiance));
-    vec3(
-        T::from_lanes(|lane| number(texel(lane)[0])),
-        T::from_lanes(|lane| number(texel(lane)[1])),
-        T::from_lanes(|lane| number(texel(lane)[2])),
-    )
+    /// The radiances of texels.
+    fn radiances<T: Real>(environment: &Environment, texels: &T::Each<u32>) -> Vec3<T> {
+        let texel = |lane: usize| &environment.texels[texels[lane] as usize];
+        let number = |radiance: f32| T::Scalar::from_f64(f64::from(radiance));
+        vec3(
+            T::from_lanes(|lane| number(texel(lane)[0])),
+            T::from_lanes(|lane| number(texel(lane)[1])),
+            T::from_lanes(|lane| number(texel(lane)[2])),
+        )
+    }
 }
 
 /// The texels around a place in the map.
@@ -339,113 +334,108 @@ struct Bilinear<T: Real> {
     shares: [T; 2],
 }
 
-#[inline(always)]
-fn bilinear<T: Real>(environment: &Environment, uv: [T; 2]) -> Bilinear<T> {
-    let half = T::HALF;
-    let x = uv[0] * T::from_f64(f64::from(environment.width)) - half;
-    let y = uv[1] * T::from_f64(f64::from(environment.height)) - half;
-    let (left, top) = (x.floor(), y.floor());
-    let (width, height) = (environment.width as i32, environment.height as i32);
-    // Written so that compilers turn it into lanes.
-    let (columns, rows) = (whole(left), whole(top));
-    let (columns, rows) = (columns.as_ref(), rows.as_ref());
-    // u is below 1: one step at most around the map.
-    let left_column = |lane: usize| if columns[lane] < 0 { width - 1 } else { columns[lane] };
-    let right_column = |lane: usize| {
-        if columns[lane] + 1 >= width {
-            0
-        } else {
-            columns[lane] + 1
-        }
-    };
-    let line = |row: i32| row.clamp(0, height - 1) * width;
-    Bilinear {
-        texels: [
-            T::each(|lane| (line(rows[lane]) + left_column(lane)) as u32),
-            T::each(|lane| (line(rows[lane]) + right_column(lane)) as u32),
-            T::each(|lane| (line(rows[lane] + 1) + left_column(lane)) as u32),
-            T::each(|lane| (line(rows[lane] + 1) + right_column(lane)) as u32),
-        ],
-        shares: [x - left, y - top],
-    }
-}
-
-/// The whole numbers in lanes, of less than 2²⁴.
-#[inline(always)]
-fn whole<T: Real>(numbers: T) -> T::Each<i32> {
-    let numbers = numbers.to_each();
-    let numbers = numbers.as_ref();
-    T::each(|lane| numbers[lane].to_f64() as f32 as i32)
-}
-
-/// Prefetches the texels at map coordinates.
-#[inline(always)]
-pub fn prefetch_texels<T: Real>(environment: &Environment, uv: [T; 2]) {
-    for texels in &bilinear(environment, uv).texels {
-        for &texel in texels.as_ref() {
-            prefetch(&environment.texels, texel as usize);
+inlined! {
+    fn bilinear<T: Real>(environment: &Environment, uv: [T; 2]) -> Bilinear<T> {
+        let half = T::HALF;
+        let x = uv[0] * T::from_f64(f64::from(environment.width)) - half;
+        let y = uv[1] * T::from_f64(f64::from(environment.height)) - half;
+        let (left, top) = (x.floor(), y.floor());
+        let (width, height) = (environment.width as i32, environment.height as i32);
+        // Written so that compilers turn it into lanes.
+        let (columns, rows) = (whole(left), whole(top));
+        let (columns, rows) = (columns.as_ref(), rows.as_ref());
+        // u is below 1: one step at most around the map.
+        let left_column = |lane: usize| if columns[lane] < 0 { width - 1 } else { columns[lane] };
+        let right_column = |lane: usize| {
+            if columns[lane] + 1 >= width {
+                0
+            } else {
+                columns[lane] + 1
+            }
+        };
+        let line = |row: i32| row.clamp(0, height - 1) * width;
+        Bilinear {
+            texels: [
+                T::each(|lane| (line(rows[lane]) + left_column(lane)) as u32),
+                T::each(|lane| (line(rows[lane]) + right_column(lane)) as u32),
+                T::each(|lane| (line(rows[lane] + 1) + left_column(lane)) as u32),
+                T::each(|lane| (line(rows[lane] + 1) + right_column(lane)) as u32),
+            ],
+            shares: [x - left, y - top],
         }
     }
-}
 
-/// Prefetches the cell at map coordinates.
-#[inline(always)]
-pub fn prefetch_cell<T: Real>(distribution: &Distribution, uv: [T; 2]) {
-    let (cells, _) = grid_places(uv, [distribution.width, distribution.height]);
-    for &cell in cells.as_ref() {
-        prefetch(&distribution.cells, cell as usize);
+    /// The whole numbers in lanes, of less than 2²⁴.
+    fn whole<T: Real>(numbers: T) -> T::Each<i32> {
+        let numbers = numbers.to_each();
+        let numbers = numbers.as_ref();
+        T::each(|lane| numbers[lane].to_f64() as f32 as i32)
     }
-}
 
-/// Samples a direction in the map's frame from three uniform numbers in [0, 1). Returns it with its density per steradian;
-/// for a black map the density is 0 and the direction arbitrary.
-///
-/// `xi.y` selects the row of a cell, `xi.x` the column, and their remainders the position inside the cell: well distributed
-/// numbers give well distributed samples. `xi.z` supplies the bits that they lack.
-#[inline(always)]
-pub fn environment_sample<T: Real>(distribution: &Distribution, xi: Vec3<T>) -> (Vec3<T>, T) {
-    sample_in_rows(distribution, &drawn_rows(distribution, xi.y), xi)
-}
+    /// Prefetches the texels at map coordinates.
+    pub fn prefetch_texels<T: Real>(environment: &Environment, uv: [T; 2]) {
+        for texels in &bilinear(environment, uv).texels {
+            for &texel in texels.as_ref() {
+                prefetch(&environment.texels, texel as usize);
+            }
+        }
+    }
 
-/// The rows of cells that [`environment_sample`] draws with `xi.y`.
-#[inline(always)]
-pub fn drawn_rows<T: Real>(distribution: &Distribution, xi_y: T) -> T::Each<u32> {
-    let numbers = xi_y.to_each();
-    T::each(|lane| distribution.row(draw_number(numbers[lane])))
-}
+    /// Prefetches the cell at map coordinates.
+    pub fn prefetch_cell<T: Real>(distribution: &Distribution, uv: [T; 2]) {
+        let (cells, _) = grid_places(uv, [distribution.width, distribution.height]);
+        for &cell in cells.as_ref() {
+            prefetch(&distribution.cells, cell as usize);
+        }
+    }
 
-/// [`environment_sample`] for known rows.
-#[inline(always)]
-pub fn sample_in_rows<T: Real>(distribution: &Distribution, rows: &T::Each<u32>, xi: Vec3<T>) -> (Vec3<T>, T) {
-    let (width, height) = (distribution.width, distribution.height);
-    let numbers = xi.to_each();
-    let drawn = T::each(|lane| {
-        let xi = numbers[lane];
-        let [row_number, number] = [draw_number(xi.y), draw_number(xi.x)];
-        let row = distribution.row_at(rows[lane]);
-        let column = distribution.column(row.index, number);
-        let [x, y] = jitter(xi.z);
-        let density = distribution.cells[(row.index * width + column.index) as usize].density;
-        let place = [place_in(column, number, x), place_in(row, row_number, y)];
+    /// Samples a direction in the map's frame from three uniform numbers in [0, 1). Returns it with its density per steradian;
+    /// for a black map the density is 0 and the direction arbitrary.
+    ///
+    /// `xi.y` selects the row of a cell, `xi.x` the column, and their remainders the position inside the cell: well distributed
+    /// numbers give well distributed samples. `xi.z` supplies the bits that they lack.
+    pub fn environment_sample<T: Real>(distribution: &Distribution, xi: Vec3<T>) -> (Vec3<T>, T) {
+        sample_in_rows(distribution, &drawn_rows(distribution, xi.y), xi)
+    }
+
+    /// The rows of cells that [`environment_sample`] draws with `xi.y`.
+    pub fn drawn_rows<T: Real>(distribution: &Distribution, xi_y: T) -> T::Each<u32> {
+        let numbers = xi_y.to_each();
+        T::each(|lane| distribution.row(draw_number(numbers[lane])))
+    }
+
+    /// [`environment_sample`] for known rows.
+    pub fn sample_in_rows<T: Real>(distribution: &Distribution, rows: &T::Each<u32>, xi: Vec3<T>) -> (Vec3<T>, T) {
+        let (width, height) = (distribution.width, distribution.height);
+        let numbers = xi.to_each();
+        let drawn = T::each(|lane| {
+            let xi = numbers[lane];
+            let [row_number, number] = [draw_number(xi.y), draw_number(xi.x)];
+            let row = distribution.row_at(rows[lane]);
+            let column = distribution.column(row.index, number);
+            let [x, y] = jitter(xi.z);
+            let density = distribution.cells[(row.index * width + column.index) as usize].density;
+            let place = [place_in(column, number, x), place_in(row, row_number, y)];
+            (
+                [column.index, row.index].map(T::Scalar::from_count),
+                place,
+                T::Scalar::from_f64(f64::from(density)),
+            )
+        });
+        let drawn = drawn.as_ref();
+        let cell = [
+            T::from_lanes(|lane| drawn[lane].0[0]),
+            T::from_lanes(|lane| drawn[lane].0[1]),
+        ];
+        let place = [
+            T::from_lanes(|lane| drawn[lane].1[0]),
+            T::from_lanes(|lane| drawn[lane].1[1]),
+        ];
         (
-            [column.index, row.index].map(T::Scalar::from_count),
-            place,
-            T::Scalar::from_f64(f64::from(density)),
+            environment_direction_in_cell(cell, place, width, height),
+            T::from_lanes(|lane| drawn[lane].2),
         )
-    });
-    let drawn = drawn.as_ref();
-    let cell = [
-        T::from_lanes(|lane| drawn[lane].0[0]),
-        T::from_lanes(|lane| drawn[lane].0[1]),
-    ];
-    let place = [
-        T::from_lanes(|lane| drawn[lane].1[0]),
-        T::from_lanes(|lane| drawn[lane].1[1]),
-    ];
-    (
-        environment_direction_in_cell(cell, place, width, height),
-        T::from_lanes(|lane| drawn[lane].2),
-    )
+    }
 }
 
 /// Two numbers in [0, 1) of twelve bits out of one of 24.
@@ -456,75 +446,68 @@ fn jitter<T: Scalar>(xi: T) -> [T; 2] {
     [whole / steps, scaled - whole]
 }
 
-/// Per lane the first cell of its row, and the cell with the guide of `xi_x`.
-#[inline(always)]
-fn guides<T: Real>(distribution: &Distribution, rows: &T::Each<u32>, xi_x: T) -> T::Each<[u32; 2]> {
-    let (width, numbers) = (distribution.width, xi_x.to_each());
-    T::each(|lane| {
-        let first = rows[lane] * width;
-        [first, first + slot(width, draw_number(numbers[lane]))]
-    })
-}
-
-/// Prefetches the guide to a row's cells, which [`sample_in_rows`] reads first.
-#[inline(always)]
-pub fn prefetch_guide<T: Real>(distribution: &Distribution, rows: &T::Each<u32>, xi_x: T) {
-    for &[_, guide] in guides(distribution, rows, xi_x).as_ref() {
-        prefetch(&distribution.cells, guide as usize);
+inlined! {
+    /// Per lane the first cell of its row, and the cell with the guide of `xi_x`.
+    fn guides<T: Real>(distribution: &Distribution, rows: &T::Each<u32>, xi_x: T) -> T::Each<[u32; 2]> {
+        let (width, numbers) = (distribution.width, xi_x.to_each());
+        T::each(|lane| {
+            let first = rows[lane] * width;
+            [first, first + slot(width, draw_number(numbers[lane]))]
+        })
     }
-}
 
-/// Prefetches the cell that [`sample_in_rows`] selects; reads the guide.
-#[inline(always)]
-pub fn prefetch_chosen<T: Real>(distribution: &Distribution, rows: &T::Each<u32>, xi_x: T) {
-    for &[first, guide] in guides(distribution, rows, xi_x).as_ref() {
-        let cell = first + distribution.cells[guide as usize].share.guide;
-        prefetch(&distribution.cells, cell as usize);
+    /// Prefetches the guide to a row's cells, which [`sample_in_rows`] reads first.
+    pub fn prefetch_guide<T: Real>(distribution: &Distribution, rows: &T::Each<u32>, xi_x: T) {
+        for &[_, guide] in guides(distribution, rows, xi_x).as_ref() {
+            prefetch(&distribution.cells, guide as usize);
+        }
     }
-}
 
-/// The direction at `place` (in [0, 1]², from the top left) of a cell, uniform in solid angle.
-#[inline(always)]
-fn environment_direction_in_cell<T: Real>(
-    [column, row]: [T; 2],
-    place: [T; 2],
-    cells_width: u32,
-    cells_height: u32,
-) -> Vec3<T> {
-    let (width, height) = (
-        T::from_f64(f64::from(cells_width)),
-        T::from_f64(f64::from(cells_height)),
-    );
-    let u = (column + place[0]) / width;
-    // sin² of half the angle is uniform in solid angle, and exact near the pole that the angle is counted from: the
-    // nearer one.
-    let is_north = (row + row).less(height);
-    let row_from_pole = T::select(is_north, row, height - T::ONE - row);
-    let across = T::select(is_north, place[1], T::ONE - place[1]);
-    let quarter_turn = T::from_f64(std::f64::consts::FRAC_PI_2);
-    let near = (quarter_turn * (row_from_pole / height)).sin();
-    let far = (quarter_turn * ((row_from_pole + T::ONE) / height)).sin();
-    let near_squared = near * near;
-    let s = near_squared + across * (far * far - near_squared);
-    let cos_from_pole = T::ONE - (s + s);
-    let sin_polar = T::TWO * (s * (T::ONE - s)).safe_sqrt();
-    let cos_polar = T::select(is_north, cos_from_pole, -cos_from_pole);
-    environment_direction_from_angles(u, cos_polar, sin_polar)
-}
+    /// Prefetches the cell that [`sample_in_rows`] selects; reads the guide.
+    pub fn prefetch_chosen<T: Real>(distribution: &Distribution, rows: &T::Each<u32>, xi_x: T) {
+        for &[first, guide] in guides(distribution, rows, xi_x).as_ref() {
+            prefetch(
+                &distribution.cells,
+                (first + distribution.cells[guide as usize].share.guide) as usize,
+            );
+        }
+    }
 
-/// The density, per steradian, with which [`environment_sample`] draws a unit direction in the map's frame.
-#[inline(always)]
-pub fn environment_density<T: Real>(distribution: &Distribution, direction_local: Vec3<T>) -> T {
-    environment_density_at(distribution, environment_uv(direction_local))
-}
+    /// The direction at `place` (in [0, 1]², from the top left) of a cell, uniform in solid angle.
+    fn environment_direction_in_cell<T: Real>(
+        [column, row]: [T; 2],
+        place: [T; 2],
+        cells_width: u32,
+        cells_height: u32,
+    ) -> Vec3<T> {
+        let (width, height) = (
+            T::from_f64(f64::from(cells_width)),
+            T::from_f64(f64::from(cells_height)),
+        );
+        let u = (column + place[0]) / width;
+        // sin² of half the angle is uniform in solid angle, and exact near the pole that the angle is counted from: the
+        // nearer one.
+        let is_north = (row + row).less(height);
+        let row_from_pole = T::select(is_north, row, height - T::ONE - row);
+        let across = T::select(is_north, place[1], T::ONE - place[1]);
+        let quarter_turn = T::from_f64(std::f64::consts::FRAC_PI_2);
+        let near = (quarter_turn * (row_from_pole / height)).sin();
+        let far = (quarter_turn * ((row_from_pole + T::ONE) / height)).sin();
+        let near_squared = near * near;
+        let s = near_squared + across * (far * far - near_squared);
+        let cos_from_pole = T::ONE - (s + s);
+        let sin_polar = T::TWO * (s * (T::ONE - s)).safe_sqrt();
+        environment_direction_from_angles(u, T::select(is_north, cos_from_pole, -cos_from_pole), sin_polar)
+    }
 
-/// The same at map coordinates ([`environment_uv`]).
-#[inline(always)]
-pub fn environment_density_at<T: Real>(distribution: &Distribution, uv: [T; 2]) -> T {
-    let size = [distribution.width, distribution.height];
-    let (cells, _) = grid_places(uv, size);
-    T::from_lanes(|lane| {
-        let cell = distribution.cells[cells.as_ref()[lane] as usize];
-        T::Scalar::from_f64(f64::from(cell.density))
-    })
+    /// The density, per steradian, with which [`environment_sample`] draws a unit direction in the map's frame.
+    pub fn environment_density<T: Real>(distribution: &Distribution, direction_local: Vec3<T>) -> T {
+        environment_density_at(distribution, environment_uv(direction_local))
+    }
+
+    /// The same at map coordinates ([`environment_uv`]).
+    pub fn environment_density_at<T: Real>(distribution: &Distribution, uv: [T; 2]) -> T {
+        let (cells, _) = grid_places(uv, [distribution.width, distribution.height]);
+        T::from_lanes(|lane| T::Scalar::from_f64(f64::from(distribution.cells[cells.as_ref()[lane] as usize].density)))
+    }
 }

@@ -32,15 +32,18 @@ pub fn brightened(pixels: &[u8], factor: f32) -> Vec<u8> {
         .map(|code| {
             // The inverse of the curve, which white at 4 ends.
             let code: f32 = linear_from_srgb(Vec3::splat(f32::from(code) / 255.0)).x;
-            let radiance = 8.0 * (code - 1.0 + ((1.0 - code).powi(2) + 0.25 * code).sqrt());
-            shown(factor * radiance)
+            shown(factor * (8.0 * (code - 1.0 + ((1.0 - code).powi(2) + 0.25 * code).sqrt())))
         })
         .collect();
-    let pixel = |[red, green, blue, alpha]: &[u8; 4]| {
-        let [red, green, blue] = [red, green, blue].map(|code| codes[usize::from(*code)]);
-        [red, green, blue, *alpha]
-    };
-    pixels.as_chunks().0.iter().flat_map(pixel).collect()
+    pixels
+        .as_chunks()
+        .0
+        .iter()
+        .flat_map(|[red, green, blue, alpha]| {
+            let [red, green, blue] = [red, green, blue].map(|code| codes[usize::from(*code)]);
+            [red, green, blue, *alpha]
+        })
+        .collect()
 }
 
 /// The mean radiance over a pixel.
@@ -73,6 +76,5 @@ fn geometric_mean_luminance(pixels: &[[f32; 3]]) -> f32 {
 /// The sRGB code of an exposed value, by Reinhard's curve with white at 4.
 fn shown(exposed: f32) -> u8 {
     let linear: f32 = exposed * (1.0 + exposed / 16.0) / (1.0 + exposed);
-    let encoded = srgb_from_linear(Vec3::splat(linear.clamp(0.0, 1.0))).x;
-    (encoded * 255.0 + 0.5) as u8
+    (srgb_from_linear(Vec3::splat(linear.clamp(0.0, 1.0))).x * 255.0 + 0.5) as u8
 }

@@ -150,8 +150,10 @@ impl Clusters {
         };
         let mut keyed: Vec<(u64, u32)> = parallel::map(boxes.len(), |index| (cell_of(&boxes[index]), index as u32));
         keyed.par_sort_unstable();
-        let is_start = |&i: &usize| i == 0 || i == keyed.len() || keyed[i].0 != keyed[i - 1].0;
-        let starts = (0..=keyed.len()).filter(is_start).map(|i| i as u32).collect();
+        let starts = (0..=keyed.len())
+            .filter(|&i| i == 0 || i == keyed.len() || keyed[i].0 != keyed[i - 1].0)
+            .map(|i| i as u32)
+            .collect();
         Self {
             members: keyed.into_iter().map(|(_, triangle)| triangle).collect(),
             starts,

@@ -221,8 +221,9 @@ impl<S: Simd> Leaves for PlacedRay<'_, S> {
         let Some(inside) = self.triangles.inside(&placed) else {
             return false;
         };
-        let reach = [entered, sink.t_max()];
-        let hits = self.triangles.hits(&placed, &normals(&placed), inside, reach);
+        let hits = self
+            .triangles
+            .hits(&placed, &normals(&placed), inside, [entered, sink.t_max()]);
         hits.record(self.first + wide.firsts[block], sink)
     }
 }
@@ -232,8 +233,7 @@ fn normals(block: &Block) -> Normals {
     let mut axes = [[f32::NAN; WIDTH]; 3];
     for lane in 0..WIDTH {
         let corner = |corner: usize| [0, 1, 2].map(|axis| block.corners[corner][axis][lane]);
-        let triangle = [corner(0), corner(1), corner(2)].map(Vec3::<f32>::from_f32);
-        let normal = triangle_normal(triangle).to_f32();
+        let normal = triangle_normal([corner(0), corner(1), corner(2)].map(Vec3::<f32>::from_f32)).to_f32();
         for (lanes, coordinate) in axes.iter_mut().zip(normal) {
             lanes[lane] = coordinate;
         }

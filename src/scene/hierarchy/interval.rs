@@ -1,6 +1,7 @@
 //! Interval traversal: the interval of many coherent rays is tested against boxes. A box that it misses is missed by every
 //! ray.
 
+use crate::optics::real::inlined;
 use fearless_simd::{ExtractToken, Level, Simd, SimdBase, SimdMask, dispatch, f32x8};
 
 use super::packet::{PACKET, Packet, PacketRays, load};
@@ -95,8 +96,9 @@ fn extent<'a, S: Simd>(simd: S, mut numbers: impl Iterator<Item = &'a [f32; PACK
         high = high.max(next);
         are_numbers &= next.simd_eq(next);
     }
-    let extent = [simd.reduce_min_f32x16(low), simd.reduce_max_f32x16(high)];
-    are_numbers.all_true().then_some(extent)
+    are_numbers
+        .all_true()
+        .then_some([simd.reduce_min_f32x16(low), simd.reduce_max_f32x16(high)])
 }
 
 /// A child's index among the children of all nodes.
@@ -125,95 +127,96 @@ pub(super) struct RayInterval<S: Simd> {
 }
 
 impl<S: Simd> RayInterval<S> {
-    #[inline(always)]
-    fn nothing(simd: S, near: [usize; 3]) -> Self {
-        let zero = [f32x8::splat(simd, 0.0); 2];
-        Self {
-            inverse: [zero; 3],
-            origin: [zero; 3],
-            near,
-        }
-    }
-
-    /// The interval of one packet's rays.
-    #[inline(always)]
-    pub fn of(simd: S, rays: &PacketRays<S>, wide: &Wide) -> Self {
-        let mut interval = Self::nothing(simd, rays.near);
-        let mut axis = 0;
-        while axis < 3 {
-            let (inverse, origin) = (rays.inverse[axis], rays.origin[axis]);
-            let inverse = [simd.reduce_min_f32x16(inverse), simd.reduce_max_f32x16(inverse)];
-            let origin = [simd.reduce_min_f32x16(origin), simd.reduce_max_f32x16(origin)];
-            interval.set(axis, inverse, origin, wide);
-            axis += 1;
-        }
-        interval
-    }
-
-    /// The interval of several packets' rays; `None` if their directions differ in sign, or one is NaN.
-    #[inline(always)]
-    fn of_packets(simd: S, packets: &[Packet], wide: &Wide) -> Option<Self> {
-        let mut interval = Self::nothing(simd, [0; 3]);
-        let mut axis = 0;
-        while axis < 3 {
-            let origin = extent(simd, packets.iter().map(|packet| &packet.origins[axis]))?;
-            let [low, high] = extent(simd, packets.iter().map(|packet| &packet.directions[axis]))?;
-            let is_backward = high < 0.0;
-            if low < 0.0 && !is_backward {
-                return None;
+    inlined! {
+        fn nothing(simd: S, near: [usize; 3]) -> Self {
+            let zero = [f32x8::splat(simd, 0.0); 2];
+            Self {
+                inverse: [zero; 3],
+                origin: [zero; 3],
+                near,
             }
-            interval.near[axis] = usize::from(is_backward);
-            // Rounding is monotonic: each ray's own inverse lies between these bounds.
-            let inverse = [low, high].map(|direction| (1.0 / direction.abs()).min(INVERSE_MAX));
-            let inverse = if is_backward {
-                [-inverse[1], -inverse[0]]
-            } else {
-                [inverse[1], inverse[0]]
-            };
-            interval.set(axis, inverse, origin, wide);
-            axis += 1;
         }
-        Some(interval)
-    }
 
-    #[inline(always)]
-    fn set(&mut self, axis: usize, [least, most]: [f32; 2], [low, high]: [f32; 2], wide: &Wide) {
-        let simd = self.inverse[0][0].token();
-        self.inverse[axis] = [f32x8::splat(simd, least), f32x8::splat(simd, most)];
-        let margin = 2.0 * RELATIVE_ERROR * (wide.reach[axis] + low.abs().max(high.abs()));
-        let outer = [low - margin, high + margin];
-        let near = self.near[axis];
-        self.origin[axis] = [
-            f32x8::splat(simd, outer[(near ^ 1) & 1]),
-            f32x8::splat(simd, outer[near & 1]),
-        ];
-    }
-
-    /// Pushes the children of a node that the interval hits, the nearest last.
-    #[inline(always)]
-    pub fn push_children(&self, wide: &Wide, index: u32, limit: f32, stack: &mut Stack) {
-        let node = &wide.nodes[index as usize];
-        let simd = self.origin[0][0].token();
-        let mut near = f32x8::splat(simd, 0.0);
-        let mut far = f32x8::splat(simd, limit);
-        let mut axis = 0;
-        while axis < 3 {
-            let [least, most] = self.inverse[axis];
-            let sides = &node.sides[axis];
-            let to_near = f32x8::load_array_ref(simd, &sides[self.near[axis] & 1]) - self.origin[axis][0];
-            let to_far = f32x8::load_array_ref(simd, &sides[(self.near[axis] ^ 1) & 1]) - self.origin[axis][1];
-            near = near.max((to_near * least).min(to_near * most));
-            far = far.min((to_far * least).max(to_far * most));
-            axis += 1;
+        /// The interval of one packet's rays.
+        pub fn of(simd: S, rays: &PacketRays<S>, wide: &Wide) -> Self {
+            let mut interval = Self::nothing(simd, rays.near);
+            let mut axis = 0;
+            while axis < 3 {
+                let (inverse, origin) = (rays.inverse[axis], rays.origin[axis]);
+                let inverse = [simd.reduce_min_f32x16(inverse), simd.reduce_max_f32x16(inverse)];
+                interval.set(
+                    axis,
+                    inverse,
+                    [simd.reduce_min_f32x16(origin), simd.reduce_max_f32x16(origin)],
+                    wide,
+                );
+                axis += 1;
+            }
+            interval
         }
-        let mut hit_bits = near.simd_le(far).to_bitmask() as u32;
-        let distances = near.to_array();
-        let base = stack.height;
-        while hit_bits != 0 {
-            let child = (hit_bits.trailing_zeros() % WIDTH as u32) as usize;
-            hit_bits &= hit_bits - 1;
-            wide.prefetch(node.children[child]);
-            stack.insert(Entry::new(distances[child], ChildId::new(index, child).0), base);
+
+        /// The interval of several packets' rays; `None` if their directions differ in sign, or one is NaN.
+        fn of_packets(simd: S, packets: &[Packet], wide: &Wide) -> Option<Self> {
+            let mut interval = Self::nothing(simd, [0; 3]);
+            let mut axis = 0;
+            while axis < 3 {
+                let origin = extent(simd, packets.iter().map(|packet| &packet.origins[axis]))?;
+                let [low, high] = extent(simd, packets.iter().map(|packet| &packet.directions[axis]))?;
+                let is_backward = high < 0.0;
+                if low < 0.0 && !is_backward {
+                    return None;
+                }
+                interval.near[axis] = usize::from(is_backward);
+                // Rounding is monotonic: each ray's own inverse lies between these bounds.
+                let inverse = [low, high].map(|direction| (1.0 / direction.abs()).min(INVERSE_MAX));
+                let inverse = if is_backward {
+                    [-inverse[1], -inverse[0]]
+                } else {
+                    [inverse[1], inverse[0]]
+                };
+                interval.set(axis, inverse, origin, wide);
+                axis += 1;
+            }
+            Some(interval)
+        }
+
+        fn set(&mut self, axis: usize, [least, most]: [f32; 2], [low, high]: [f32; 2], wide: &Wide) {
+            let simd = self.inverse[0][0].token();
+            self.inverse[axis] = [f32x8::splat(simd, least), f32x8::splat(simd, most)];
+            let margin = 2.0 * RELATIVE_ERROR * (wide.reach[axis] + low.abs().max(high.abs()));
+            let outer = [low - margin, high + margin];
+            let near = self.near[axis];
+            self.origin[axis] = [
+                f32x8::splat(simd, outer[(near ^ 1) & 1]),
+                f32x8::splat(simd, outer[near & 1]),
+            ];
+        }
+
+        /// Pushes the children of a node that the interval hits, the nearest last.
+        pub fn push_children(&self, wide: &Wide, index: u32, limit: f32, stack: &mut Stack) {
+            let node = &wide.nodes[index as usize];
+            let simd = self.origin[0][0].token();
+            let mut near = f32x8::splat(simd, 0.0);
+            let mut far = f32x8::splat(simd, limit);
+            let mut axis = 0;
+            while axis < 3 {
+                let [least, most] = self.inverse[axis];
+                let sides = &node.sides[axis];
+                let to_near = f32x8::load_array_ref(simd, &sides[self.near[axis] & 1]) - self.origin[axis][0];
+                let to_far = f32x8::load_array_ref(simd, &sides[(self.near[axis] ^ 1) & 1]) - self.origin[axis][1];
+                near = near.max((to_near * least).min(to_near * most));
+                far = far.min((to_far * least).max(to_far * most));
+                axis += 1;
+            }
+            let mut hit_bits = near.simd_le(far).to_bitmask() as u32;
+            let distances = near.to_array();
+            let base = stack.height;
+            while hit_bits != 0 {
+                let child = (hit_bits.trailing_zeros() % WIDTH as u32) as usize;
+                hit_bits &= hit_bits - 1;
+                wide.prefetch(node.children[child]);
+                stack.insert(Entry::new(distances[child], ChildId::new(index, child).0), base);
+            }
         }
     }
 }

@@ -87,25 +87,30 @@ impl Hierarchy {
 
     /// Memory in bytes of the hierarchies built so far.
     pub(super) fn bytes(&self) -> usize {
-        let compressed = |built: &Compressed| size_of_val(&built.nodes[..]) + size_of_val(&built.triangles[..]);
         self.tree.as_ref().map_or(0, Tree::bytes)
             + self.wide.get().map_or(0, Wide::bytes)
-            + self.compressed.get().map_or(0, compressed)
+            + self.compressed.get().map_or(0, |built| {
+                size_of_val(&built.nodes[..]) + size_of_val(&built.triangles[..])
+            })
     }
 
     /// The CPU's hierarchy; `corners` are those of the triangles as stored.
     pub(super) fn wide(&self, corners: impl Fn(u32) -> [[f32; 3]; 3] + Sync) -> &Wide {
         self.wide.get_or_init(|| {
-            let make = |tree: &Tree| Wide::new(tree, PART_MAX, &corners);
-            self.built(make, |wide| wide.depth).unwrap_or_default()
+            self.built(|tree| Wide::new(tree, PART_MAX, &corners), |wide| wide.depth)
+                .unwrap_or_default()
         })
     }
 
     /// The GPU's hierarchy; `corners` are those of the triangles as stored.
     pub(super) fn compressed(&self, corners: impl Fn(u32) -> [[f32; 3]; 3] + Sync) -> &Compressed {
         self.compressed.get_or_init(|| {
-            let make = |tree: &Tree| compressed::compress(&BoxedTree::new(tree, tree.root(), &corners));
-            let built: CwBvh = self.built(make, compressed::depth).unwrap_or_default();
+            let built: CwBvh = self
+                .built(
+                    |tree| compressed::compress(&BoxedTree::new(tree, tree.root(), &corners)),
+                    compressed::depth,
+                )
+                .unwrap_or_default();
             Compressed {
                 nodes: built.nodes,
                 triangles: built.primitive_indices,

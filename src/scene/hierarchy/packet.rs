@@ -8,6 +8,7 @@ use fearless_simd::{ExtractToken, Simd, SimdBase, SimdMask, f32x8, f32x16, mask3
 
 use super::traverse::{BoxRay, Entry, HitSink, INVERSE_MAX, RELATIVE_ERROR, SingleRay, TriangleRay};
 use super::wide::{Block, Node, Normals, WIDTH, Wide};
+use crate::optics::real::inlined;
 use crate::scene::Hit;
 
 /// Rays per packet.
@@ -163,43 +164,42 @@ pub fn ray_octant(direction: [f32; 3]) -> usize {
 /// Number of octants: eight, times three longest axes.
 pub const OCTANTS: usize = 24;
 
-#[inline(always)]
-pub(super) fn load<S: Simd>(simd: S, lanes: &[f32; PACKET]) -> f32x16<S> {
-    f32x16::load_array_ref(simd, lanes)
-}
-
-#[inline(always)]
-fn load_three<S: Simd>(simd: S, axes: &[[f32; PACKET]; 3]) -> [f32x16<S>; 3] {
-    [load(simd, &axes[0]), load(simd, &axes[1]), load(simd, &axes[2])]
-}
-
-/// The octant of all rays; `None` if they differ.
-#[inline(always)]
-pub(super) fn common_octant<S: Simd>(simd: S, packet: &Packet) -> Option<usize> {
-    let octant = ray_octant(packet.direction(0));
-    let zero = f32x16::splat(simd, 0.0);
-    let directions = load_three(simd, &packet.directions);
-    let mut axis = 0;
-    while axis < 3 {
-        let backward = directions[axis].simd_lt(zero);
-        let is_alike = if octant >> axis & 1 == 1 {
-            backward.all_true()
-        } else {
-            backward.all_false()
-        };
-        if !is_alike {
-            return None;
-        }
-        axis += 1;
+inlined! {
+    pub(super) fn load<S: Simd>(simd: S, lanes: &[f32; PACKET]) -> f32x16<S> {
+        f32x16::load_array_ref(simd, lanes)
     }
-    let (x, y, z) = (directions[0].abs(), directions[1].abs(), directions[2].abs());
-    let along_z = z.simd_ge(x) & z.simd_ge(y);
-    let is_alike = match octant >> 3 {
-        2 => along_z.all_true(),
-        1 => along_z.all_false() && y.simd_ge(x).all_true(),
-        _ => along_z.all_false() && y.simd_ge(x).all_false(),
-    };
-    is_alike.then_some(octant)
+
+    fn load_three<S: Simd>(simd: S, axes: &[[f32; PACKET]; 3]) -> [f32x16<S>; 3] {
+        [load(simd, &axes[0]), load(simd, &axes[1]), load(simd, &axes[2])]
+    }
+
+    /// The octant of all rays; `None` if they differ.
+    pub(super) fn common_octant<S: Simd>(simd: S, packet: &Packet) -> Option<usize> {
+        let octant = ray_octant(packet.direction(0));
+        let zero = f32x16::splat(simd, 0.0);
+        let directions = load_three(simd, &packet.directions);
+        let mut axis = 0;
+        while axis < 3 {
+            let backward = directions[axis].simd_lt(zero);
+            let is_alike = if octant >> axis & 1 == 1 {
+                backward.all_true()
+            } else {
+                backward.all_false()
+            };
+            if !is_alike {
+                return None;
+            }
+            axis += 1;
+        }
+        let (x, y, z) = (directions[0].abs(), directions[1].abs(), directions[2].abs());
+        let along_z = z.simd_ge(x) & z.simd_ge(y);
+        let is_alike = match octant >> 3 {
+            2 => along_z.all_true(),
+            1 => along_z.all_false() && y.simd_ge(x).all_true(),
+            _ => along_z.all_false() && y.simd_ge(x).all_false(),
+        };
+        is_alike.then_some(octant)
+    }
 }
 
 /// Result of a packet against a box.
@@ -224,77 +224,73 @@ pub(super) struct PacketRays<S: Simd> {
 }
 
 impl<S: Simd> PacketRays<S> {
-    #[inline(always)]
-    pub(super) fn new(simd: S, packet: &Packet, wide: &Wide, octant: usize) -> Self {
-        let axes = [[1, 2, 0], [0, 2, 1], [0, 1, 2]][octant >> 3];
-        let [axis_x, axis_y, along] = axes;
-        let direction = load_three(simd, &packet.directions);
-        let mut rays = Self {
-            origin: load_three(simd, &packet.origins),
-            direction,
-            inverse: direction,
-            near_offset: direction,
-            far_offset: direction,
-            near: [octant & 1, octant >> 1 & 1, octant >> 2 & 1],
-            axes,
-            shear: [
-                -direction[axis_x] / direction[along],
-                -direction[axis_y] / direction[along],
-            ],
-        };
-        rays.invert(wide, 0);
-        rays.invert(wide, 1);
-        rays.invert(wide, 2);
-        rays
-    }
+    inlined! {
+        pub(super) fn new(simd: S, packet: &Packet, wide: &Wide, octant: usize) -> Self {
+            let axes = [[1, 2, 0], [0, 2, 1], [0, 1, 2]][octant >> 3];
+            let [axis_x, axis_y, along] = axes;
+            let direction = load_three(simd, &packet.directions);
+            let mut rays = Self {
+                origin: load_three(simd, &packet.origins),
+                direction,
+                inverse: direction,
+                near_offset: direction,
+                far_offset: direction,
+                near: [octant & 1, octant >> 1 & 1, octant >> 2 & 1],
+                axes,
+                shear: [
+                    -direction[axis_x] / direction[along],
+                    -direction[axis_y] / direction[along],
+                ],
+            };
+            rays.invert(wide, 0);
+            rays.invert(wide, 1);
+            rays.invert(wide, 2);
+            rays
+        }
 
-    /// Prepares the test against boxes on one axis, with the same arithmetic as for single rays.
-    #[inline(always)]
-    fn invert(&mut self, wide: &Wide, axis: usize) {
-        let (origin, direction) = (self.origin[axis], self.direction[axis]);
-        let simd = origin.token();
-        let size = (f32x16::splat(simd, 1.0) / direction.abs()).min(f32x16::splat(simd, INVERSE_MAX));
-        let inverse = if self.near[axis] == 1 { -size } else { size };
-        let reach = f32x16::splat(simd, wide.reach[axis]) + origin.abs();
-        let (shift, margin) = (-origin * inverse, reach * size * f32x16::splat(simd, RELATIVE_ERROR));
-        self.inverse[axis] = inverse;
-        self.near_offset[axis] = shift - margin;
-        self.far_offset[axis] = shift + margin;
-    }
+        /// Prepares the test against boxes on one axis, with the same arithmetic as for single rays.
+        fn invert(&mut self, wide: &Wide, axis: usize) {
+            let (origin, direction) = (self.origin[axis], self.direction[axis]);
+            let simd = origin.token();
+            let size = (f32x16::splat(simd, 1.0) / direction.abs()).min(f32x16::splat(simd, INVERSE_MAX));
+            let inverse = if self.near[axis] == 1 { -size } else { size };
+            let reach = f32x16::splat(simd, wide.reach[axis]) + origin.abs();
+            let (shift, margin) = (-origin * inverse, reach * size * f32x16::splat(simd, RELATIVE_ERROR));
+            self.inverse[axis] = inverse;
+            self.near_offset[axis] = shift - margin;
+            self.far_offset[axis] = shift + margin;
+        }
 
-    /// Tests the rays against a child's box; `None` if none hits.
-    #[inline(always)]
-    pub(super) fn intersect_box(&self, node: &Node, child: usize, t_max: &[f32; PACKET]) -> Option<BoxHits<S>> {
-        let limits = load(self.origin[0].token(), t_max);
-        let simd = limits.token();
-        let (x, y, z) = (
-            self.near(node, child, 0),
-            self.near(node, child, 1),
-            self.near(node, child, 2),
-        );
-        let distance = x.max(y).max(z.max(f32x16::splat(simd, 0.0)));
-        let (x, y, z) = (
-            self.far(node, child, 0),
-            self.far(node, child, 1),
-            self.far(node, child, 2),
-        );
-        let left = x.min(y).min(z.min(limits));
-        let mask = distance.simd_le(left);
-        mask.any_true().then_some(BoxHits { mask, distance })
-    }
+        /// Tests the rays against a child's box; `None` if none hits.
+        pub(super) fn intersect_box(&self, node: &Node, child: usize, t_max: &[f32; PACKET]) -> Option<BoxHits<S>> {
+            let limits = load(self.origin[0].token(), t_max);
+            let simd = limits.token();
+            let (x, y, z) = (
+                self.near(node, child, 0),
+                self.near(node, child, 1),
+                self.near(node, child, 2),
+            );
+            let distance = x.max(y).max(z.max(f32x16::splat(simd, 0.0)));
+            let (x, y, z) = (
+                self.far(node, child, 0),
+                self.far(node, child, 1),
+                self.far(node, child, 2),
+            );
+            let mask = distance.simd_le(x.min(y).min(z.min(limits)));
+            mask.any_true().then_some(BoxHits { mask, distance })
+        }
 
-    /// Distance to a child's near side.
-    #[inline(always)]
-    fn near(&self, node: &Node, child: usize, axis: usize) -> f32x16<S> {
-        let side = node.sides[axis][self.near[axis] & 1][child];
-        f32x16::splat(self.origin[0].token(), side) * self.inverse[axis] + self.near_offset[axis]
-    }
+        /// Distance to a child's near side.
+        fn near(&self, node: &Node, child: usize, axis: usize) -> f32x16<S> {
+            let side = node.sides[axis][self.near[axis] & 1][child];
+            f32x16::splat(self.origin[0].token(), side) * self.inverse[axis] + self.near_offset[axis]
+        }
 
-    /// Distance to a child's far side.
-    #[inline(always)]
-    fn far(&self, node: &Node, child: usize, axis: usize) -> f32x16<S> {
-        let side = node.sides[axis][(self.near[axis] ^ 1) & 1][child];
-        f32x16::splat(self.origin[0].token(), side) * self.inverse[axis] + self.far_offset[axis]
+        /// Distance to a child's far side.
+        fn far(&self, node: &Node, child: usize, axis: usize) -> f32x16<S> {
+            let side = node.sides[axis][(self.near[axis] ^ 1) & 1][child];
+            f32x16::splat(self.origin[0].token(), side) * self.inverse[axis] + self.far_offset[axis]
+        }
     }
 
     /// Continues below a child with the rays that hit its box, one by one. Returns true if any hit is replaced.
@@ -317,8 +313,8 @@ impl<S: Simd> PacketRays<S> {
                 hits,
                 is_closer: false,
             };
-            let entry = Entry::new(distances[lane], child);
-            self.single(lane).traverse::<ANY, _>(wide, entry, &mut sink);
+            self.single(lane)
+                .traverse::<ANY, _>(wide, Entry::new(distances[lane], child), &mut sink);
             is_closer |= sink.is_closer;
         }
         is_closer
@@ -390,34 +386,35 @@ impl<S: Simd> PacketRays<S> {
         is_closer
     }
 
-    /// Numerator and denominator of the distance to a triangle's plane: (n · (corner − origin), n · direction).
-    #[inline(always)]
-    fn distance(&self, block: &Block, normals: &Normals, triangle: usize) -> (f32x16<S>, f32x16<S>) {
-        let simd = self.origin[0].token();
-        let x = f32x16::splat(simd, normals.axes[0][triangle]);
-        let y = f32x16::splat(simd, normals.axes[1][triangle]);
-        let z = f32x16::splat(simd, normals.axes[2][triangle]);
-        let [dx, dy, dz] = self.direction;
-        let from_x = self.relative(block, 0, 0, triangle);
-        let from_y = self.relative(block, 0, 1, triangle);
-        let from_z = self.relative(block, 0, 2, triangle);
-        (x * from_x + y * from_y + z * from_z, x * dx + y * dy + z * dz)
-    }
+    inlined! {
+        /// Numerator and denominator of the distance to a triangle's plane: (n · (corner − origin), n · direction).
+        fn distance(&self, block: &Block, normals: &Normals, triangle: usize) -> (f32x16<S>, f32x16<S>) {
+            let simd = self.origin[0].token();
+            let x = f32x16::splat(simd, normals.axes[0][triangle]);
+            let y = f32x16::splat(simd, normals.axes[1][triangle]);
+            let z = f32x16::splat(simd, normals.axes[2][triangle]);
+            let [dx, dy, dz] = self.direction;
+            let from_x = self.relative(block, 0, 0, triangle);
+            let from_y = self.relative(block, 0, 1, triangle);
+            (
+                x * from_x + y * from_y + z * self.relative(block, 0, 2, triangle),
+                x * dx + y * dy + z * dz,
+            )
+        }
 
-    /// A coordinate of a corner relative to the rays' origins.
-    #[inline(always)]
-    fn relative(&self, block: &Block, corner: usize, axis: usize, triangle: usize) -> f32x16<S> {
-        f32x16::splat(self.origin[0].token(), block.corners[corner][axis][triangle]) - self.origin[axis]
-    }
+        /// A coordinate of a corner relative to the rays' origins.
+        fn relative(&self, block: &Block, corner: usize, axis: usize, triangle: usize) -> f32x16<S> {
+            f32x16::splat(self.origin[0].token(), block.corners[corner][axis][triangle]) - self.origin[axis]
+        }
 
-    /// A corner projected along the rays.
-    #[inline(always)]
-    fn project(&self, block: &Block, corner: usize, triangle: usize) -> (f32x16<S>, f32x16<S>) {
-        let [axis_x, axis_y, along] = self.axes;
-        let depth = self.relative(block, corner, along, triangle);
-        (
-            self.relative(block, corner, axis_x, triangle) + depth * self.shear[0],
-            self.relative(block, corner, axis_y, triangle) + depth * self.shear[1],
-        )
+        /// A corner projected along the rays.
+        fn project(&self, block: &Block, corner: usize, triangle: usize) -> (f32x16<S>, f32x16<S>) {
+            let [axis_x, axis_y, along] = self.axes;
+            let depth = self.relative(block, corner, along, triangle);
+            (
+                self.relative(block, corner, axis_x, triangle) + depth * self.shear[0],
+                self.relative(block, corner, axis_y, triangle) + depth * self.shear[1],
+            )
+        }
     }
 }

@@ -14,6 +14,7 @@ use glam::Vec3A;
 
 use super::DEPTH_MAX;
 use super::wide::{BLOCK, Block, Node, Normals, WIDTH, Wide};
+use crate::optics::real::inlined;
 use crate::scene::intersect::{Hit, RayFrame};
 
 /// Relative error bound of a box's or a triangle's position from the ray's origin: eleven roundings, five of a box's plane
@@ -146,8 +147,12 @@ impl<S: Simd> Leaves for TriangleRay<S> {
         let Some(inside) = self.inside(&wide.blocks[block]) else {
             return false;
         };
-        let reach = [entered, sink.t_max()];
-        let hits = self.hits(&wide.blocks[block], &wide.normals[block], inside, reach);
+        let hits = self.hits(
+            &wide.blocks[block],
+            &wide.normals[block],
+            inside,
+            [entered, sink.t_max()],
+        );
         hits.record(wide.firsts[block], sink)
     }
 }
@@ -173,102 +178,101 @@ pub(super) struct BoxRay<S: Simd> {
 }
 
 impl<S: Simd> BoxRay<S> {
-    #[inline(always)]
-    pub fn new(simd: S, frame: &RayFrame, wide: &Wide) -> Self {
-        let margin = |size: Vec3A| (wide.reach + frame.origin.abs()) * size * RELATIVE_ERROR;
-        Self::with_margin(simd, frame.origin, frame.direction, margin)
-    }
+    inlined! {
+        pub fn new(simd: S, frame: &RayFrame, wide: &Wide) -> Self {
+            let margin = |size: Vec3A| (wide.reach + frame.origin.abs()) * size * RELATIVE_ERROR;
+            Self::with_margin(simd, frame.origin, frame.direction, margin)
+        }
 
-    /// A ray with a `margin` of distances, made of the sizes of its inverse directions.
-    #[inline(always)]
-    pub fn with_margin(simd: S, origin: Vec3A, direction: Vec3A, margin: impl FnOnce(Vec3A) -> Vec3A) -> Self {
-        // −0 is positive here as in `backward`; NaN becomes the largest inverse.
-        let is_backward = direction.cmplt(Vec3A::ZERO);
-        let size = direction.abs().recip().min(Vec3A::splat(INVERSE_MAX));
-        let inverse = Vec3A::select(is_backward, -size, size);
-        let shift = -origin * inverse;
-        let margin = margin(size);
-        let backward = is_backward.bitmask() as usize;
-        Self {
-            inverse: splat(simd, inverse),
-            near_offset: splat(simd, shift - margin),
-            far_offset: splat(simd, shift + margin),
-            near: [backward & 1, backward >> 1 & 1, backward >> 2 & 1],
+        /// A ray with a `margin` of distances, made of the sizes of its inverse directions.
+        pub fn with_margin(simd: S, origin: Vec3A, direction: Vec3A, margin: impl FnOnce(Vec3A) -> Vec3A) -> Self {
+            // −0 is positive here as in `backward`; NaN becomes the largest inverse.
+            let is_backward = direction.cmplt(Vec3A::ZERO);
+            let size = direction.abs().recip().min(Vec3A::splat(INVERSE_MAX));
+            let inverse = Vec3A::select(is_backward, -size, size);
+            let shift = -origin * inverse;
+            let margin = margin(size);
+            let backward = is_backward.bitmask() as usize;
+            Self {
+                inverse: splat(simd, inverse),
+                near_offset: splat(simd, shift - margin),
+                far_offset: splat(simd, shift + margin),
+                near: [backward & 1, backward >> 1 & 1, backward >> 2 & 1],
+            }
         }
-    }
 
-    /// The nearest child whose box is hit before `t_max`. Pushes the other hit children, the nearest last.
-    #[inline(always)]
-    fn intersect_children(&self, wide: &Wide, index: u32, t_max: f32, stack: &mut Stack) -> Option<Entry> {
-        let node = &wide.nodes[index as usize];
-        let simd = self.inverse[0].token();
-        let (x, y, z) = (self.near(node, 0), self.near(node, 1), self.near(node, 2));
-        let near = x.max(y).max(z.max(f32x8::splat(simd, 0.0)));
-        let (x, y, z) = (self.far(node, 0), self.far(node, 1), self.far(node, 2));
-        let far = x.min(y).min(z.min(f32x8::splat(simd, t_max)));
-        let hit_bits = near.simd_le(far).to_bitmask() as u32;
-        if hit_bits == 0 {
-            return None;
-        }
-        let mut hit_bits = Children {
-            children: hit_bits,
-            near: near.to_array(),
-        };
-        let first = hit_bits.take(wide, node);
-        if hit_bits.children == 0 {
-            return Some(first);
-        }
-        let second = hit_bits.take(wide, node);
-        let (nearest, farther) = if second.0 < first.0 {
-            (second, first)
-        } else {
-            (first, second)
-        };
-        if hit_bits.children == 0 {
+        /// The nearest child whose box is hit before `t_max`. Pushes the other hit children, the nearest last.
+        fn intersect_children(&self, wide: &Wide, index: u32, t_max: f32, stack: &mut Stack) -> Option<Entry> {
+            let node = &wide.nodes[index as usize];
+            let simd = self.inverse[0].token();
+            let (x, y, z) = (self.near(node, 0), self.near(node, 1), self.near(node, 2));
+            let near = x.max(y).max(z.max(f32x8::splat(simd, 0.0)));
+            let (x, y, z) = (self.far(node, 0), self.far(node, 1), self.far(node, 2));
+            let hit_bits = near
+                .simd_le(x.min(y).min(z.min(f32x8::splat(simd, t_max))))
+                .to_bitmask() as u32;
+            if hit_bits == 0 {
+                return None;
+            }
+            let mut hit_bits = Children {
+                children: hit_bits,
+                near: near.to_array(),
+            };
+            let first = hit_bits.take(wide, node);
+            if hit_bits.children == 0 {
+                return Some(first);
+            }
+            let second = hit_bits.take(wide, node);
+            let (nearest, farther) = if second.0 < first.0 {
+                (second, first)
+            } else {
+                (first, second)
+            };
+            if hit_bits.children == 0 {
+                stack.push(farther);
+                return Some(nearest);
+            }
+            let base = stack.height;
             stack.push(farther);
-            return Some(nearest);
+            stack.push(nearest);
+            while hit_bits.children != 0 {
+                stack.insert(hit_bits.take(wide, node), base);
+            }
+            stack.pop()
         }
-        let base = stack.height;
-        stack.push(farther);
-        stack.push(nearest);
-        while hit_bits.children != 0 {
-            stack.insert(hit_bits.take(wide, node), base);
+
+        /// Bit mask of the boxes `[low, high][axis][box]` that are hit before `t_max`, and their entry distances. Boxes of NaN are
+        /// missed.
+        pub fn intersect_boxes(&self, sides: [&[[f32; WIDTH]; 3]; 2], t_max: f32) -> (u32, [f32; WIDTH]) {
+            let simd = self.inverse[0].token();
+            let (mut near, mut far) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, t_max));
+            let mut axis = 0;
+            while axis < 3 {
+                let side = |far: usize| f32x8::load_array_ref(simd, &sides[(self.near[axis] ^ far) & 1][axis]);
+                near = near.max(side(0) * self.inverse[axis] + self.near_offset[axis]);
+                far = far.min(side(1) * self.inverse[axis] + self.far_offset[axis]);
+                axis += 1;
+            }
+            let low = f32x8::load_array_ref(simd, &sides[0][0]);
+            (
+                (near.simd_le(far) & low.simd_eq(low)).to_bitmask() as u32,
+                near.to_array(),
+            )
         }
-        stack.pop()
-    }
 
-    /// Bit mask of the boxes `[low, high][axis][box]` that are hit before `t_max`, and their entry distances. Boxes of NaN are
-    /// missed.
-    #[inline(always)]
-    pub fn intersect_boxes(&self, sides: [&[[f32; WIDTH]; 3]; 2], t_max: f32) -> (u32, [f32; WIDTH]) {
-        let simd = self.inverse[0].token();
-        let (mut near, mut far) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, t_max));
-        let mut axis = 0;
-        while axis < 3 {
-            let side = |far: usize| f32x8::load_array_ref(simd, &sides[(self.near[axis] ^ far) & 1][axis]);
-            near = near.max(side(0) * self.inverse[axis] + self.near_offset[axis]);
-            far = far.min(side(1) * self.inverse[axis] + self.far_offset[axis]);
-            axis += 1;
+        /// Distances to the children's near sides.
+        fn near(&self, node: &Node, axis: usize) -> f32x8<S> {
+            let simd = self.inverse[0].token();
+            f32x8::load_array_ref(simd, &node.sides[axis][self.near[axis] & 1]) * self.inverse[axis]
+                + self.near_offset[axis]
         }
-        let low = f32x8::load_array_ref(simd, &sides[0][0]);
-        let is_hit = near.simd_le(far) & low.simd_eq(low);
-        (is_hit.to_bitmask() as u32, near.to_array())
-    }
 
-    /// Distances to the children's near sides.
-    #[inline(always)]
-    fn near(&self, node: &Node, axis: usize) -> f32x8<S> {
-        let simd = self.inverse[0].token();
-        f32x8::load_array_ref(simd, &node.sides[axis][self.near[axis] & 1]) * self.inverse[axis]
-            + self.near_offset[axis]
-    }
-
-    /// Distances to the children's far sides.
-    #[inline(always)]
-    fn far(&self, node: &Node, axis: usize) -> f32x8<S> {
-        let simd = self.inverse[0].token();
-        f32x8::load_array_ref(simd, &node.sides[axis][(self.near[axis] ^ 1) & 1]) * self.inverse[axis]
-            + self.far_offset[axis]
+        /// Distances to the children's far sides.
+        fn far(&self, node: &Node, axis: usize) -> f32x8<S> {
+            let simd = self.inverse[0].token();
+            f32x8::load_array_ref(simd, &node.sides[axis][(self.near[axis] ^ 1) & 1]) * self.inverse[axis]
+                + self.far_offset[axis]
+        }
     }
 }
 
@@ -339,81 +343,78 @@ pub(super) struct TriangleRay<S: Simd> {
 }
 
 impl<S: Simd> TriangleRay<S> {
-    #[inline(always)]
-    pub fn new(simd: S, frame: &RayFrame) -> Self {
-        let [_, _, along] = frame.axes;
-        Self {
-            origin: splat(simd, frame.origin),
-            direction: splat(simd, frame.direction),
-            axes: frame.axes,
-            shear: [
-                f32x8::splat(simd, frame.axis_x[along]),
-                f32x8::splat(simd, frame.axis_y[along]),
-            ],
+    inlined! {
+        pub fn new(simd: S, frame: &RayFrame) -> Self {
+            let [_, _, along] = frame.axes;
+            Self {
+                origin: splat(simd, frame.origin),
+                direction: splat(simd, frame.direction),
+                axes: frame.axes,
+                shear: [
+                    f32x8::splat(simd, frame.axis_x[along]),
+                    f32x8::splat(simd, frame.axis_y[along]),
+                ],
+            }
         }
-    }
 
-    /// The triangles of a block that the ray's line passes through; `None` if there are none.
-    #[inline(always)]
-    pub fn inside(&self, block: &Block) -> Option<Inside<S>> {
-        let zero = f32x8::splat(self.origin[0].token(), 0.0);
-        let [(ax, ay), (bx, by), (cx, cy)] = [self.project(block, 0), self.project(block, 1), self.project(block, 2)];
-        // Watertight: neighbours compute the same area for a shared edge but for its sign, as no product is fused.
-        let (u, v, w) = (cx * by - cy * bx, ax * cy - ay * cx, bx * ay - by * ax);
-        let mask = (u.simd_ge(zero) & v.simd_ge(zero) & w.simd_ge(zero))
-            | (u.simd_le(zero) & v.simd_le(zero) & w.simd_le(zero));
-        let areas = [u, v, w];
-        (!mask.all_false()).then_some(Inside { mask, areas })
-    }
-
-    /// The triangles of a block that are hit with 0 < t ≤ `t_max`; t is raised to `entered`.
-    #[inline(always)]
-    pub fn hits(
-        &self,
-        block: &Block,
-        normals: &Normals,
-        Inside { mask, areas }: Inside<S>,
-        [entered, t_max]: [f32; 2],
-    ) -> BlockHits<S> {
-        let simd = self.origin[0].token();
-        let zero = f32x8::splat(simd, 0.0);
-        let [u, v, w] = areas;
-        let x = f32x8::load_array_ref(simd, &normals.axes[0]);
-        let y = f32x8::load_array_ref(simd, &normals.axes[1]);
-        let z = f32x8::load_array_ref(simd, &normals.axes[2]);
-        let [dx, dy, dz] = self.direction;
-        let from_origin = [
-            self.relative(block, 0, 0),
-            self.relative(block, 0, 1),
-            self.relative(block, 0, 2),
-        ];
-        let t = (x * from_origin[0] + y * from_origin[1] + z * from_origin[2]) / (x * dx + y * dy + z * dz);
-        let clamped = t.max(f32x8::splat(simd, entered));
-        // False for a triangle seen edge-on and for NaN.
-        let is_before = t.simd_gt(zero) & clamped.simd_le(f32x8::splat(simd, t_max));
-        let is_hit = mask & !(u + v + w).simd_eq(zero) & is_before;
-        BlockHits {
-            hit_bits: is_hit.to_bitmask() as u32,
-            t: clamped,
-            areas,
+        /// The triangles of a block that the ray's line passes through; `None` if there are none.
+        pub fn inside(&self, block: &Block) -> Option<Inside<S>> {
+            let zero = f32x8::splat(self.origin[0].token(), 0.0);
+            let [(ax, ay), (bx, by), (cx, cy)] = [self.project(block, 0), self.project(block, 1), self.project(block, 2)];
+            // Watertight: neighbours compute the same area for a shared edge but for its sign, as no product is fused.
+            let (u, v, w) = (cx * by - cy * bx, ax * cy - ay * cx, bx * ay - by * ax);
+            let mask = (u.simd_ge(zero) & v.simd_ge(zero) & w.simd_ge(zero))
+                | (u.simd_le(zero) & v.simd_le(zero) & w.simd_le(zero));
+            let areas = [u, v, w];
+            (!mask.all_false()).then_some(Inside { mask, areas })
         }
-    }
 
-    /// A coordinate of a corner relative to the ray's origin.
-    #[inline(always)]
-    fn relative(&self, block: &Block, corner: usize, axis: usize) -> f32x8<S> {
-        f32x8::load_array_ref(self.origin[0].token(), &block.corners[corner][axis]) - self.origin[axis]
-    }
+        /// The triangles of a block that are hit with 0 < t ≤ `t_max`; t is raised to `entered`.
+        pub fn hits(
+            &self,
+            block: &Block,
+            normals: &Normals,
+            Inside { mask, areas }: Inside<S>,
+            [entered, t_max]: [f32; 2],
+        ) -> BlockHits<S> {
+            let simd = self.origin[0].token();
+            let zero = f32x8::splat(simd, 0.0);
+            let [u, v, w] = areas;
+            let x = f32x8::load_array_ref(simd, &normals.axes[0]);
+            let y = f32x8::load_array_ref(simd, &normals.axes[1]);
+            let z = f32x8::load_array_ref(simd, &normals.axes[2]);
+            let [dx, dy, dz] = self.direction;
+            let from_origin = [
+                self.relative(block, 0, 0),
+                self.relative(block, 0, 1),
+                self.relative(block, 0, 2),
+            ];
+            let t = (x * from_origin[0] + y * from_origin[1] + z * from_origin[2]) / (x * dx + y * dy + z * dz);
+            let clamped = t.max(f32x8::splat(simd, entered));
+            // False for a triangle seen edge-on and for NaN.
+            let is_before = t.simd_gt(zero) & clamped.simd_le(f32x8::splat(simd, t_max));
+            let is_hit = mask & !(u + v + w).simd_eq(zero) & is_before;
+            BlockHits {
+                hit_bits: is_hit.to_bitmask() as u32,
+                t: clamped,
+                areas,
+            }
+        }
 
-    /// A corner projected along the ray.
-    #[inline(always)]
-    fn project(&self, block: &Block, corner: usize) -> (f32x8<S>, f32x8<S>) {
-        let [axis_x, axis_y, along] = self.axes;
-        let depth = self.relative(block, corner, along);
-        (
-            self.relative(block, corner, axis_x) + depth * self.shear[0],
-            self.relative(block, corner, axis_y) + depth * self.shear[1],
-        )
+        /// A coordinate of a corner relative to the ray's origin.
+        fn relative(&self, block: &Block, corner: usize, axis: usize) -> f32x8<S> {
+            f32x8::load_array_ref(self.origin[0].token(), &block.corners[corner][axis]) - self.origin[axis]
+        }
+
+        /// A corner projected along the ray.
+        fn project(&self, block: &Block, corner: usize) -> (f32x8<S>, f32x8<S>) {
+            let [axis_x, axis_y, along] = self.axes;
+            let depth = self.relative(block, corner, along);
+            (
+                self.relative(block, corner, axis_x) + depth * self.shear[0],
+                self.relative(block, corner, axis_y) + depth * self.shear[1],
+            )
+        }
     }
 }
 

@@ -227,8 +227,7 @@ impl<F: Fn(u32) -> [[f32; 3]; 3] + Sync> Parts<'_, F> {
             let Some(child) = largest.filter(|&child| children[child].count > self.part_max) else {
                 break;
             };
-            let sides = self.tree.sides(children[child]);
-            children.splice(child..=child, sides);
+            children.splice(child..=child, self.tree.sides(children[child]));
         }
         children
     }

@@ -1,7 +1,6 @@
 //! Means of texture maps.
 
-use crate::optics::tone::linear_from_srgb;
-use crate::optics::vector::Vec3;
+use crate::optics::{tone::linear_from_srgb, vector::Vec3};
 use crate::scene::model::Texture;
 
 /// Codes of 8 bits.

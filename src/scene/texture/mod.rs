@@ -13,9 +13,7 @@ mod uses;
 
 use bytemuck::{Pod, Zeroable};
 
-use super::geometry::Geometry;
-use super::part::Vertex;
-use super::triangle_normal;
+use super::{geometry::Geometry, part::Vertex, triangle_normal};
 use crate::optics::frame::frame_from_tangent;
 use crate::optics::layer::fuzz::FUZZ_ROUGHNESS_MIN;
 use crate::optics::material::{
@@ -175,8 +173,7 @@ fn texel<T: Scalar>(textures: &Textures, record: &TextureRecord, column: u32, ro
         let [rg, ba] = [textures.words[first], textures.words[first + 1]];
         return (vec3(fraction(rg), fraction(rg >> 16), fraction(ba)), fraction(ba >> 16));
     }
-    let word = textures.words[(record.first_texel + place) as usize];
-    let [r, g, b, a] = word.to_le_bytes();
+    let [r, g, b, a] = textures.words[(record.first_texel + place) as usize].to_le_bytes();
     let channel = |code: u8| {
         let linear = if record.flags & IS_SRGB != 0 {
             f32::from_bits(textures.words[usize::from(code)])
@@ -427,8 +424,11 @@ pub fn opacity_at<T: Scalar>(textures: &Textures, material: &Material<T>, uvs: U
 /// Effective opacity of a surface point: 0 or 1 for a masked material.
 fn stopped_share<T: Scalar>(material: &Material<T>, opacity: T) -> T {
     let cutoff = material.alpha_cutoff;
-    let masked = T::select(opacity.less(cutoff), T::ZERO, T::ONE);
-    T::select(cutoff.below_zero(), opacity, masked)
+    T::select(
+        cutoff.below_zero(),
+        opacity,
+        T::select(opacity.less(cutoff), T::ZERO, T::ONE),
+    )
 }
 
 /// The normal of a normal map, in world space. `tangent` and the bitangent's sign are the geometry's, `normal` the
@@ -453,10 +453,14 @@ pub fn mapped_normal<T: Scalar>(
     let is_box = record.flags & IS_BOX != 0;
     let tangent = if is_box { box_right(outward) } else { tangent };
     let along = frame_from_tangent(normal, tangent, T::ZERO);
-    let is_left = !is_box && sign.to_f64() < 0.0;
-    let bitangent = if is_left { -along.bitangent } else { along.bitangent };
+    let bitangent = if !is_box && sign.to_f64() < 0.0 {
+        -along.bitangent
+    } else {
+        along.bitangent
+    };
     // A normal that points into the surface is bent onto it.
-    let up = signed(texel.z).max(T::ZERO);
-    let mapped = along.tangent * x + bitangent * y + normal * up;
-    normalize_or(mapped, normal)
+    normalize_or(
+        along.tangent * x + bitangent * y + normal * signed(texel.z).max(T::ZERO),
+        normal,
+    )
 }

@@ -216,12 +216,15 @@ impl Pack {
         let is_translucent = |picture: usize| self.pictures[picture].is_translucent;
         let mut uses: Vec<SlotUses> = model.slots.iter().map(|slot| of_slot(slot, is_translucent)).collect();
         for assignment in assigned {
-            let is_it = |user: &&UserTextureFile| user.is_of(&assignment.texture, assignment.target);
-            let picture = self.user_textures.iter().find(is_it).and_then(|user| user.index);
+            let picture = self
+                .user_textures
+                .iter()
+                .find(|user| user.is_of(&assignment.texture, assignment.target))
+                .and_then(|user| user.index);
             let has_coordinates = self.has_coordinates.get(assignment.slot) == Some(&true);
-            let used = |picture| of_user_texture(assignment, picture, is_translucent(picture), has_coordinates);
             if let Some(slot) = uses.get_mut(assignment.slot) {
-                slot[assignment.target as usize] = picture.map(used);
+                slot[assignment.target as usize] = picture
+                    .map(|picture| of_user_texture(assignment, picture, is_translucent(picture), has_coordinates));
             }
         }
         uses
@@ -402,10 +405,7 @@ impl Textures {
 }
 
 fn decoded_codes() -> impl Iterator<Item = u32> {
-    (0..DECODED).map(|code| {
-        let linear = linear_from_srgb(Vec3::<f64>::splat(code as f64 / 255.0)).x;
-        (linear as f32).to_bits()
-    })
+    (0..DECODED).map(|code| (linear_from_srgb(Vec3::<f64>::splat(code as f64 / 255.0)).x as f32).to_bits())
 }
 
 /// Whether the triangles of each slot have texture coordinates: not the same ones at all corners.

@@ -57,15 +57,16 @@ fn halved_codes<C: Copy + PartialEq + Into<usize>>(
     if codes.is_empty() {
         return Vec::new();
     }
-    let decoded = |code: usize| {
-        let fraction = code as f64 / most as f64;
-        if is_color {
-            linear_from_srgb(Vec3::splat(fraction)).x
-        } else {
-            fraction
-        }
-    };
-    let values: Vec<f64> = (0..=most).map(decoded).collect();
+    let values: Vec<f64> = (0..=most)
+        .map(|code| {
+            let fraction = code as f64 / most as f64;
+            if is_color {
+                linear_from_srgb(Vec3::splat(fraction)).x
+            } else {
+                fraction
+            }
+        })
+        .collect();
     let [width, height] = size.map(|side| side as usize);
     let [to_width, to_height] = half(size).map(|side| side as usize);
     let texels = codes.as_chunks::<4>().0;

@@ -57,6 +57,7 @@ pub struct Registered {
     holds: Holds,
     write: fn(&Subject, &Path) -> Result<Written, ExchangeError>,
     /// None of a format that is only written.
+    #[expect(clippy::type_complexity, reason = "a function")]
     read: Option<fn(&Path, ReadOptions) -> Result<Subject, ExchangeError>>,
     pub help: &'static str,
 }

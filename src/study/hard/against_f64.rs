@@ -160,6 +160,7 @@ fn largest_error(stage: &mut Stage, lobe: Lobe) -> Result<f64, StudyError> {
 }
 
 /// Values of materials with their errors; none where the value is singular.
+#[expect(clippy::type_complexity, reason = "pairs")]
 fn answers(
     stage: &Stage,
     settings: &[MaterialSettings],

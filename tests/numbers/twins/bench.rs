@@ -13,7 +13,9 @@ use glossmith::optics::albedo::{albedo_table, rough_albedo_table};
 use glossmith::optics::curve::{CUSTOM_INTERVALS, Curve, custom_table};
 use glossmith::optics::fresnel::Fresnel;
 use glossmith::optics::lobe::{Horizon, Lobe};
-use glossmith::optics::material::{COATS_BASE, COMPENSATES, MATCHED_NODES, Material, NO_TEXTURE, OVER_AZIMUTH};
+use glossmith::optics::material::{
+    COATS_BASE, COMPENSATES, HOLDS_FILM, HOLDS_INTEGRALS, MATCHED_NODES, Material, NO_TEXTURE, OVER_AZIMUTH,
+};
 use glossmith::optics::random::Sequence;
 use glossmith::optics::real::Scalar;
 use glossmith::optics::scattering::scattering_table;
@@ -96,6 +98,10 @@ pub static SCENE: LazyLock<Scene> = LazyLock::new(|| {
         for curve in Curve::ALL {
             for fresnel in Fresnel::ALL {
                 let mut material = random_material(&mut rng, *lobe, *curve, *fresnel);
+                if matches!(fresnel, Fresnel::None | Fresnel::Conductor) {
+                    // Materials are compiled so: only the exact equations know total reflection.
+                    material.transmission_weight = 0.0;
+                }
                 material.lobe_table = curves[rng.below(CUSTOM_CURVES)];
                 let mut texture = || {
                     let record = rng.below(2 * textures.records.len());
@@ -162,7 +168,7 @@ pub static SCENE: LazyLock<Scene> = LazyLock::new(|| {
             material.anisotropy = 0.0;
         }
         material.has_rough_tables = match number % 4 {
-            3 => 1,
+            3 => HOLDS_INTEGRALS | HOLDS_FILM,
             2 if material.anisotropy != 0.0 => OVER_AZIMUTH,
             _ => 0,
         };

@@ -3,8 +3,8 @@
 use glossmith::optics::vector::{Vec3, vec3};
 use glossmith::scene::camera::{Camera, PixelFilter, camera_ray, filter_offset};
 use glossmith::scene::environment::{
-    environment_density, environment_direction, environment_local_from_world, environment_radiance, environment_sample,
-    environment_uv, environment_world_from_local,
+    environment_density, environment_local_from_world, environment_radiance, environment_sample, environment_uv,
+    environment_world_from_local,
 };
 
 use super::bench::SCENE;
@@ -57,17 +57,6 @@ fn environments_agree() {
             .number("uv.x", 1.0)
             .number("uv.y", 1.0)
             .group("", |rng, _| inputs![rng.direction()]),
-            Case::new(
-                "environment_direction",
-                "u v",
-                "",
-                twin!(|row| {
-                    let uv = row.numbers();
-                    row.put_vector(environment_direction(uv));
-                }),
-            )
-            .output("environment_direction(vec2f(u, v))", UNIT)
-            .group("", |rng, _| inputs![Value::Unit(rng.unit()), Value::Unit(rng.unit())]),
             Case::new(
                 "environment_radiance",
                 "direction",

@@ -169,7 +169,7 @@ fn materials_agree() {
                     row.put_vector(albedo_lookup(&SCENE.tables, material.albedo_table, cosine));
                 }),
             )
-            .output("albedo_lookup(material_at(material).albedo_table, cosine)", COLOUR)
+            .output("rough_albedo_lookup(material_at(material).albedo_table, cosine, 0.0).xyz", COLOUR)
             .group("", |rng, _| {
                 inputs![rng.below(SCENE.materials.len()) as u32, Value::Unit(rng.unit())]
             }),
@@ -194,7 +194,7 @@ fn materials_agree() {
             .group("", |rng, _| {
                 let rough: Vec<u32> = (0..)
                     .zip(&SCENE.materials)
-                    .filter(|(_, material)| material.has_rough_tables == 1)
+                    .filter(|(_, material)| material.holds_integrals())
                     .map(|(number, _)| number)
                     .collect();
                 inputs![

@@ -39,7 +39,8 @@ fn surfaces_agree() {
             Case::new(
                 "surface_at",
                 "triangle t u v direction",
-                "let p = surface_at(Hit(t, triangle, u, v), direction);",
+                "let slot = slot_at(triangle); \
+                 let p = surface_of(Hit(t, triangle, u, v), direction, slot, material_at(slot));",
                 twin!(|row| {
                     let triangle = SCENE.geometry.triangle_at(row.bits());
                     let [t, u, v] = row.numbers().map(|x: T| x.to_f64() as f32);

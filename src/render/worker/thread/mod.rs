@@ -150,8 +150,8 @@ impl State<'_> {
     /// Makes the requested layers once there are samples at full resolution.
     fn make_layers(&mut self) {
         let is_full = self.stage.as_ref().is_some_and(|stage| stage.reduction == 1);
-        let has_samples = |session: &Session| session.progress().samples_per_pixel > 0;
-        if self.requested_layers.is_empty() || !is_full || !self.session.as_ref().is_some_and(has_samples) {
+        let has_none = |session: &Session| session.progress().samples_per_pixel == 0;
+        if self.requested_layers.is_empty() || !is_full || self.session.as_ref().is_none_or(has_none) {
             return;
         }
         for path in std::mem::take(&mut self.requested_layers) {
@@ -386,8 +386,9 @@ impl State<'_> {
         let environment = &document.lighting.environment;
         if is_new(&|known| known.lighting.environment == *environment) {
             self.begin_loading(environment.to_string());
-            let encoding = document.lighting.environment_encoding;
-            self.session()?.assets().environment(environment, encoding)?;
+            self.session()?
+                .assets()
+                .environment(environment, document.lighting.environment_encoding)?;
         }
         self.session()?.submit_shared(document)?;
         Ok(())
@@ -464,9 +465,8 @@ impl State<'_> {
 
     /// Whether the stage must be shown before another submission is taken.
     fn keeps_stage(&self) -> bool {
-        let is_unseen = |stage: &Stage| !stage.may_be_replaced();
         let is_in_work = self.should_render() || self.denoising.is_pending();
-        self.stage.as_ref().is_some_and(is_unseen) && is_in_work
+        self.stage.as_ref().is_some_and(|stage| !stage.may_be_replaced()) && is_in_work
     }
 
     /// Time until there is something to do without an order.
@@ -490,8 +490,11 @@ impl State<'_> {
     /// Whether the engine waits for the denoiser. On the same cores each would take as long as both, and the user waits for
     /// the denoised image.
     fn yields_to_denoiser(&self) -> bool {
-        let is_on_cores = |session: &Session| session.engine().is_software || session.is_fallback();
-        self.denoising.is_pending() && self.session.as_ref().is_some_and(is_on_cores)
+        self.denoising.is_pending()
+            && self
+                .session
+                .as_ref()
+                .is_some_and(|session| session.engine().is_software || session.is_fallback())
     }
 
     /// The current activity.

@@ -1,7 +1,6 @@
 //! Publishing of images, denoised images and maps.
 
-use std::sync::Arc;
-use std::time::Instant;
+use std::{sync::Arc, time::Instant};
 
 use super::State;
 use crate::document::Denoise;

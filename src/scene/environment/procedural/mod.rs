@@ -23,8 +23,7 @@ fn texels_of(width: u32, height: u32, radiance: impl Fn(Vec3<f64>) -> [f32; 3] +
     let mut texels = vec![[0.0, 0.0, 0.0, 1.0]; (width * height) as usize];
     parallel::for_rows(&mut texels, width as usize, |row, texels| {
         for (column, texel) in (0..).zip(texels) {
-            let direction = texel_direction([column, row as u32], [width, height]);
-            texel[..3].copy_from_slice(&radiance(direction));
+            texel[..3].copy_from_slice(&radiance(texel_direction([column, row as u32], [width, height])));
         }
     });
     texels

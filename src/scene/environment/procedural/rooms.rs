@@ -93,17 +93,22 @@ const WAREHOUSE_WALLS: Walls = Walls {
     ceiling: [0.1, 0.1, 0.105],
     bend: 0.15,
 };
+const fn skylight(x: f64) -> SoftBox {
+    soft_box([x, 3.4, 0.2], [0.34, 2.6], [4.2, 0.8, 0.1], [1.0, 0.97, 0.9])
+}
+/// On the left.
+const fn window(z: f64) -> SoftBox {
+    soft_box([-4.2, 1.0, z], [0.62, 1.3], [5.5, 0.8, 0.08], [0.78, 0.89, 1.0])
+}
 /// Skylights, windows, a gate.
 const WAREHOUSE: [SoftBox; 8] = [
-    // The skylights.
-    soft_box([-2.2, 3.4, 0.2], [0.34, 2.6], [4.2, 0.8, 0.1], [1.0, 0.97, 0.9]),
-    soft_box([-0.75, 3.4, 0.2], [0.34, 2.6], [4.2, 0.8, 0.1], [1.0, 0.97, 0.9]),
-    soft_box([0.75, 3.4, 0.2], [0.34, 2.6], [4.2, 0.8, 0.1], [1.0, 0.97, 0.9]),
-    soft_box([2.2, 3.4, 0.2], [0.34, 2.6], [4.2, 0.8, 0.1], [1.0, 0.97, 0.9]),
-    // The windows on the left.
-    soft_box([-4.2, 1.0, -1.6], [0.62, 1.3], [5.5, 0.8, 0.08], [0.78, 0.89, 1.0]),
-    soft_box([-4.2, 1.0, 0.0], [0.62, 1.3], [5.5, 0.8, 0.08], [0.78, 0.89, 1.0]),
-    soft_box([-4.2, 1.0, 1.6], [0.62, 1.3], [5.5, 0.8, 0.08], [0.78, 0.89, 1.0]),
+    skylight(-2.2),
+    skylight(-0.75),
+    skylight(0.75),
+    skylight(2.2),
+    window(-1.6),
+    window(0.0),
+    window(1.6),
     // The open gate on the right, in the evening.
     soft_box([4.2, 0.3, 0.4], [1.6, 1.5], [1.3, 0.7, 0.15], [1.0, 0.72, 0.45]),
 ];
@@ -133,11 +138,11 @@ pub fn warehouse() -> Result<Environment, MapError> {
 pub fn overcast() -> Result<Environment, MapError> {
     let sun = vec3(-0.55, 0.62, 0.56).normalize();
     let texels = texels_of(512, 256, |direction| {
-        let height = direction.y.max(0.0);
-        let clouds = vec3(0.93, 0.985, 1.06) * (ZENITH * mix(1.0 / 3.0, 1.0, height));
+        let clouds = vec3(0.93, 0.985, 1.06) * (ZENITH * mix(1.0 / 3.0, 1.0, direction.y.max(0.0)));
         let glow = vec3(1.0, 0.96, 0.88) * (SUN_GLOW * ((direction.dot(sun) - 1.0) / 0.1).exp());
-        let ground = vec3(0.28, 0.25, 0.215);
-        ground.mix(clouds + glow, smoothstep(-0.06, 0.02, direction.y)).to_f32()
+        vec3(0.28, 0.25, 0.215)
+            .mix(clouds + glow, smoothstep(-0.06, 0.02, direction.y))
+            .to_f32()
     });
     Environment::from_texels("overcast", 512, 256, texels)
 }

@@ -127,8 +127,7 @@ impl Model {
         let sun = sun_irradiance(params);
         let sky = self.sky_irradiance();
         [0, 1, 2].map(|channel| {
-            let irradiance = sky[channel] + sun[channel] * self.sun_direction.y.max(0.0);
-            params.ground_albedo[channel] * irradiance / PI
+            params.ground_albedo[channel] * (sky[channel] + sun[channel] * self.sun_direction.y.max(0.0)) / PI
         })
     }
 
@@ -161,8 +160,7 @@ impl Model {
 
 /// Adds the sun's disc, each texel by its covered area, such that the bilinear map has exactly the sun's irradiance.
 fn add_sun(params: &SkyParams, texels: &mut [[f32; 4]]) {
-    let direction = sun_direction(params);
-    let coverage = sun_coverage(direction);
+    let coverage = sun_coverage(sun_direction(params));
     let covered: f64 = coverage
         .iter()
         .map(|&(index, share)| share * texel_solid_angle(index as u32 / WIDTH, WIDTH, HEIGHT))

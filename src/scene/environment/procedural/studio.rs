@@ -30,8 +30,7 @@ fn room(direction: Vec3<f64>) -> Vec3<f64> {
     let in_front = mix(0.4, 1.0, 0.5 + 0.5 * direction.z);
     let pool = 0.11 * in_front * smoothstep(0.0, 0.45, depth) * mix(1.0, 0.25, smoothstep(0.45, 1.0, depth));
     let walls = ceiling + pool;
-    let backdrop = vec3(0.0, -0.05, -1.0).normalize();
-    let from_backdrop = 1.0 - direction.dot(backdrop);
+    let from_backdrop = 1.0 - direction.dot(vec3(0.0, -0.05, -1.0).normalize());
     let glow = 0.19 * (-from_backdrop / 0.06).exp() + 0.05 * (-from_backdrop / 0.3).exp();
     vec3(1.0, 1.0, 1.015) * (walls + glow)
 }
