@@ -10,7 +10,11 @@ pub(super) fn upper_share(a: f64, x: f64) -> f64 {
     if factor == 0.0 {
         return if x < a { 1.0 } else { 0.0 };
     }
-    (1.0 - factor * lower_sum(a, x)).max(0.0)
+    if x < a + 1.0 {
+        1.0 - factor * lower_sum(a, x)
+    } else {
+        factor * upper_fraction(a, x)
+    }
 }
 
 /// Σ xⁿ / (a (a+1) … (a+n)), which converges fast below a.
@@ -24,6 +28,33 @@ fn lower_sum(a: f64, x: f64) -> f64 {
         }
     }
     sum
+}
+
+/// Legendre's continued fraction, which converges fast above a; from its head on (Lentz 1976).
+fn upper_fraction(a: f64, x: f64) -> f64 {
+    let mut b = x + 1.0 - a;
+    let (mut c, mut d) = (1.0 / f64::MIN_POSITIVE, 1.0 / b);
+    let mut value = d;
+    for n in 1..TERMS {
+        let n = n as f64;
+        let numerator = n * (a - n);
+        b += 2.0;
+        d = 1.0 / kept_from_0(b + numerator * d);
+        c = kept_from_0(b + numerator / c);
+        value *= c * d;
+        if (c * d - 1.0).abs() < f64::EPSILON {
+            break;
+        }
+    }
+    value
+}
+
+fn kept_from_0(x: f64) -> f64 {
+    if x.abs() < f64::MIN_POSITIVE {
+        f64::MIN_POSITIVE
+    } else {
+        x
+    }
 }
 
 /// ln Γ(a) for a > 0: Stirling's series, beyond a number from which on it is exact.

@@ -205,7 +205,7 @@ fn table(ui: &mut Ui, race: &Race, is_stale: bool) -> Option<usize> {
     let mut order: Vec<(usize, &Runner)> = race.runners.iter().enumerate().collect();
     order.sort_by(|(_, a), (_, b)| a.time_to_noise.total_cmp(&b.time_to_noise));
     let mut taken = None;
-    Grid::new("runners").striped(true).show(ui, |ui| {
+    Grid::new("runners").num_columns(4).striped(true).show(ui, |ui| {
         let to_noise = format!("To {}", percent(race.noise));
         for heading in ["", to_noise.as_str(), "Bias", ""] {
             ui.weak(heading);

@@ -74,7 +74,8 @@ impl ExportSheet {
 /// What becomes of a material's parts, and the images of a ball.
 fn material_rows(ui: &mut Ui, material: &MaterialReport, textures: Option<&[TextureHandle; 3]>) {
     ui.label(RichText::new(&material.material).strong());
-    let grid = Grid::new(&material.material).spacing([12.0, 3.0]);
+    // The last column is what fills the sheet: else its lines break anew each frame, and buttons below move away.
+    let grid = Grid::new(&material.material).num_columns(2).spacing([12.0, 3.0]);
     grid.show(ui, |ui| {
         for entry in &material.entries {
             let word = RichText::new(entry.outcome.word());

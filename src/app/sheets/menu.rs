@@ -210,7 +210,7 @@ fn shortcuts(ui: &mut Ui) {
     ui.heading("Keys and mouse");
     ui.add_space(theme::GAP);
     scrolled(ui, |ui| {
-        Grid::new("keys").spacing(vec2(24.0, 5.0)).show(ui, |ui| {
+        Grid::new("keys").num_columns(2).spacing(vec2(24.0, 5.0)).show(ui, |ui| {
             let mut all = MOUSE.map(|(how, what)| (how.to_owned(), what)).to_vec();
             let commands = Command::ALL
                 .iter()

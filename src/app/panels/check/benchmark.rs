@@ -46,7 +46,7 @@ pub fn show(ui: &mut Ui, state: &mut BenchmarkState, desk: &mut Desk) {
 fn table(ui: &mut Ui, engine: &EngineReport) {
     ui.add_space(4.0);
     ui.strong(engine.name());
-    let grid = Grid::new(("benchmark", engine.name()));
+    let grid = Grid::new(("benchmark", engine.name())).num_columns(3);
     grid.striped(true).show(ui, |ui| {
         for row in &engine.rows {
             ui.label(format!("{}, {}", row.step, row.case));

@@ -49,7 +49,7 @@ pub fn show(ui: &mut Ui, state: &mut HardState, engine: EngineChoice) {
         }
     });
     widgets::failure(ui, standing.error);
-    Grid::new("hard cases").striped(true).show(ui, |ui| {
+    Grid::new("hard cases").num_columns(3).striped(true).show(ui, |ui| {
         for row in &standing.rows {
             line(ui, row, &mut state.textures);
             ui.end_row();

@@ -78,7 +78,7 @@ fn table(ui: &mut Ui, checks: &[Check]) {
         0 => _ = ui.strong(format!("All {} checks passed.", checks.len())),
         failed => widgets::failure(ui, format!("{failed} of {} checks failed.", checks.len())),
     }
-    Grid::new("checks").striped(true).show(ui, |ui| {
+    Grid::new("checks").num_columns(3).striped(true).show(ui, |ui| {
         for heading in ["Group", "Passed", "Failed"] {
             ui.weak(heading);
         }

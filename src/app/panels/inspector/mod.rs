@@ -76,7 +76,7 @@ fn values(ui: &mut Ui, desk: &Desk, picture: &Picture, [x, y]: [u32; 2]) {
         return;
     };
     let shown = [r, g, b];
-    Grid::new("pixel").striped(true).show(ui, |ui| {
+    Grid::new("pixel").num_columns(2).striped(true).show(ui, |ui| {
         let mut line = |name: &str, text: String| {
             ui.weak(name);
             widgets::line(ui, text);

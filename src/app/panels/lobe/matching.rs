@@ -82,7 +82,7 @@ pub fn show(ui: &mut Ui, desk: &mut Desk, state: &mut MatchState, source: Option
 
 fn result(ui: &mut Ui, desk: &mut Desk, matched: &Matched, is_current: bool) {
     let found = &matched.found;
-    Grid::new("residuals").show(ui, |ui| {
+    Grid::new("residuals").num_columns(3).show(ui, |ui| {
         let rows = [
             ("Before", &found.before),
             ("Roughness matched", &found.nearest),
