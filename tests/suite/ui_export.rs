@@ -25,7 +25,6 @@ fn type_path(harness: &mut Editor, path: &std::path::Path) {
 }
 
 #[test]
-#[ignore = "the buttons of the export's sheet do not answer: to be mended first"]
 fn what_an_export_loses_is_shown_before_it_is_written() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let mut harness = editor();

@@ -85,6 +85,13 @@ fn each_save_is_reported_over_the_viewport() {
     harness.key_press(egui::Key::Escape);
     harness.run_steps(2);
     close(&mut harness);
+    harness.command(Command::Export);
+    type_path(&mut harness, &path("out.mtlx"), "Save");
+    see_label(&mut harness, "Write the file");
+    harness.run_steps(3);
+    press(&mut harness, "Write the file");
+    see_label(&mut harness, "Exported out.mtlx");
+    close(&mut harness);
     harness.command(Command::QueuePicture);
     type_path(&mut harness, &path("queued.png"), "Save");
     see(&mut harness, "the render", |harness| {

@@ -210,18 +210,21 @@ fn shortcuts(ui: &mut Ui) {
     ui.heading("Keys and mouse");
     ui.add_space(theme::GAP);
     scrolled(ui, |ui| {
-        Grid::new("keys").num_columns(2).spacing(vec2(24.0, 5.0)).show(ui, |ui| {
-            let mut all = MOUSE.map(|(how, what)| (how.to_owned(), what)).to_vec();
-            let commands = Command::ALL
-                .iter()
-                .map(|command| (palette::keys(ui, *command), command.label()));
-            all.extend(commands.filter(|(keys, _)| !keys.is_empty()));
-            for (how, what) in all {
-                ui.label(RichText::new(how).strong());
-                ui.label(what);
-                ui.end_row();
-            }
-        });
+        Grid::new("keys")
+            .num_columns(2)
+            .spacing(vec2(24.0, 5.0))
+            .show(ui, |ui| {
+                let mut all = MOUSE.map(|(how, what)| (how.to_owned(), what)).to_vec();
+                let commands = Command::ALL
+                    .iter()
+                    .map(|command| (palette::keys(ui, *command), command.label()));
+                all.extend(commands.filter(|(keys, _)| !keys.is_empty()));
+                for (how, what) in all {
+                    ui.label(RichText::new(how).strong());
+                    ui.label(what);
+                    ui.end_row();
+                }
+            });
     });
     ui.add_space(theme::GAP);
     widgets::entry(ui, "Close", "");
