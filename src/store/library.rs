@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use super::FileError;
 use super::preset::{command_line_name, load_material, save_material};
 use crate::document::MaterialSettings;
+use crate::import::endings::has_ending;
 
 /// A file of the folder.
 #[derive(Clone, Debug, PartialEq)]
@@ -53,10 +54,7 @@ pub fn list(folder: &Path) -> Result<Vec<Entry>, FileError> {
 
 /// The material that is a file, or the one in a folder for one.
 fn material_at(path: PathBuf) -> Option<PathBuf> {
-    if path
-        .extension()
-        .is_some_and(|ending| ending.eq_ignore_ascii_case("json"))
-    {
+    if has_ending(&path, &["json"]) {
         return Some(path);
     }
     file_within(&path).filter(|within| within.is_file())

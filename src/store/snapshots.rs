@@ -12,6 +12,7 @@ use super::picture::{parse_picture_document, png_bytes};
 use super::project::document_text;
 use super::replace::save_atomically;
 use crate::document::Document;
+use crate::import::endings::has_ending;
 
 /// Longest side of a pinned image, pixels.
 pub const SIDE_MAX: u32 = 256;
@@ -30,10 +31,7 @@ pub struct Pinned {
 /// The pinned states of a folder, the newest first, and what is wrong with files that cannot be read; none where it is
 /// not there.
 pub fn list(folder: &Path) -> Result<(Vec<Pinned>, Vec<String>), FileError> {
-    let is_png = |path: &PathBuf| {
-        path.extension()
-            .is_some_and(|ending| ending.eq_ignore_ascii_case("png"))
-    };
+    let is_png = |path: &PathBuf| has_ending(path, &["png"]);
     let (mut found, mut errors) = (Vec::new(), Vec::new());
     for path in paths_in(folder)?.into_iter().filter(is_png) {
         let at = fs::metadata(&path).and_then(|metadata| metadata.modified()).ok();

@@ -4,13 +4,13 @@ use std::path::Path;
 
 use super::report::{EVERYTHING, Entry, MaterialReport};
 use super::{ExchangeError, ReadOptions, Subject, Written};
+use crate::import::endings::has_ending;
 use crate::store::opened::{self, Opened};
 use crate::store::preset::material_text;
 use crate::store::project::own_text;
 
 pub fn write(subject: &Subject, path: &Path) -> Result<Written, ExchangeError> {
-    let ending = path.extension().unwrap_or_default();
-    if ending.eq_ignore_ascii_case("png") {
+    if has_ending(path, &["png"]) {
         return Err(ExchangeError::NotWritten { path: path.to_owned() });
     }
     let text = match &subject.document {

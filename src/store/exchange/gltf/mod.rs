@@ -13,6 +13,7 @@ use super::surface::{Law, Surface, Takes};
 use super::{ExchangeError, ReadOptions, Subject, Written, carried, shown};
 use crate::document::of_model::{import_report, materials_of};
 use crate::document::{Document, ImportLobe, MaterialSettings};
+use crate::import::endings::has_ending;
 use crate::import::{Budget, gltf_from_widths, limits, load, load_with};
 use crate::scene::texture::{TextureTarget, texture_mean};
 use crate::scene::{Fate, Model, ModelSource, Slot, Wrap};
@@ -99,9 +100,7 @@ pub fn write(subject: &Subject, path: &Path) -> Result<Written, ExchangeError> {
         reports.push(report);
     }
     let primitives = file.primitives(&model, &materials);
-    let is_binary = !path
-        .extension()
-        .is_some_and(|ending| ending.eq_ignore_ascii_case("gltf"));
+    let is_binary = !has_ending(path, &["gltf"]);
     let json = file.document(&model.name, primitives, materials);
     Ok(packed(path, json, file.bytes, is_binary, reports))
 }
