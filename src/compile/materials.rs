@@ -4,7 +4,7 @@ use std::sync::{Arc, Mutex};
 
 use crate::document::import::{MATCHED, geometric_from_ggx, ggx_under_texture};
 use crate::document::{CoatLobe, MaterialSettings};
-use crate::optics::albedo::{albedo_table, rough_albedo_table};
+use crate::optics::albedo::{albedo_table, film_table, rough_albedo_table};
 use crate::optics::fresnel::{Fresnel, fresnel_f0, weighted_ior};
 use crate::optics::layer::coat::{coat_shape, inner_reflection};
 use crate::optics::layer::fuzz::FUZZ_ROUGHNESS_MIN;
@@ -396,8 +396,8 @@ fn remembered(key: TableKey) -> Arc<[f32]> {
     let is_inside = key.holds == Holds::InnerAlbedo;
     let table: Arc<[f32]> = match key.holds {
         Holds::Energies => scattering_table(&of, ENERGY_SAMPLES * samples).into(),
-        Holds::Film { is_inside } => rough_albedo_table(&of, &key.curve_table, samples, is_inside, true).into(),
-        _ if is_rough => rough_albedo_table(&of, &key.curve_table, samples, is_inside, false).into(),
+        Holds::Film { is_inside } => film_table(&of, &key.curve_table, samples, is_inside).into(),
+        _ if is_rough => rough_albedo_table(&of, &key.curve_table, samples, is_inside).into(),
         _ => albedo_table(&of, &key.curve_table, samples, is_inside).into(),
     };
     let mut memory = memory();

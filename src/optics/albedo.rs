@@ -80,25 +80,10 @@ fn node_cosine(node: usize, eta: f64) -> f64 {
 /// Table of the specular lobe's albedo over the view's cosine, from within or outside, for [`albedo_lookup`]; of a stretched
 /// lobe over its azimuth too, for [`rough_albedo_lookup`]. `samples` per node.
 pub fn albedo_table(material: &Material<f64>, tables: &[f32], samples: u32, is_inside: bool) -> Vec<f32> {
-    let shape = material.shape(tables);
     let terms = material.fresnel_terms(is_inside);
-    let is_stretched = material.is_over_azimuth();
-    let means = |index: usize| {
-        let turn = is_stretched.then(|| node_turn(index / ALBEDO_NODES, shape.anisotropy));
-        let [r, g, b] = node_means(
-            index % ALBEDO_NODES,
-            turn,
-            is_inside,
-            material,
-            &shape,
-            samples,
-            |cosine| fresnel(&terms, cosine).to_f64(),
-        );
-        [r, g, b, 0.0]
-    };
-    let steps = if is_stretched { ROUGHNESS_NODES } else { 1 };
-    let nodes = parallel::map(steps * ALBEDO_NODES, means).into_flattened();
-    nodes.into_iter().map(|x| x as f32).collect()
+    table_of(material, tables, samples, is_inside, |cosine| {
+        color_node(fresnel(&terms, cosine))
+    })
 }
 
 inlined! {
@@ -140,22 +125,22 @@ pub fn node_turn(step: usize, anisotropy: f64) -> f64 {
 
 /// Mean over a lobe, at a table node, of its weight times `factors` of the half vector's cosine; of a stretched lobe at this
 /// turn of the view, or over all.
-fn node_means<const N: usize>(
+fn node_means(
     node: usize,
     turn: Option<f64>,
     is_inside: bool,
     material: &Material<f64>,
     shape: &LobeShape<'_, f64>,
     samples: u32,
-    factors: impl Fn(f64) -> [f64; N],
-) -> [f64; N] {
+    factors: impl Fn(f64) -> [f64; 4],
+) -> [f64; 4] {
     let normal = vec3(0.0, 0.0, 1.0);
     let frame = frame_from_normal(normal);
     let eta = if is_inside { material.ior_ahead(true) } else { 1.0 };
     // At exactly grazing the microfacet lobes are 0/0.
     let cosine = node_cosine(node, eta).max(1e-3);
     let is_stretched = shape.anisotropy != 0.0;
-    let mut sums = [0.0; N];
+    let mut sums = [0.0; 4];
     for i in 0..samples {
         let [a, b, c, any_turn] = even_point(i);
         let wo = view_at(cosine, if is_stretched { turn.unwrap_or(any_turn) } else { 0.0 });
@@ -168,46 +153,54 @@ fn node_means<const N: usize>(
     sums.map(|sum| sum / f64::from(samples))
 }
 
-/// Table of a material with varying roughness, metalness or base colour, for [`rough_albedo_lookup`]; `samples` per node. Or
-/// of what a thin film changes of its dielectric, untinted.
-pub fn rough_albedo_table(
+/// Table of a material with varying roughness, metalness or base colour, for [`rough_albedo_lookup`]; `samples` per node.
+pub fn rough_albedo_table(material: &Material<f64>, tables: &[f32], samples: u32, is_inside: bool) -> Vec<f32> {
+    let terms = material.fresnel_terms(is_inside);
+    table_of(material, tables, samples, is_inside, |cosine| {
+        fresnel_basis(&terms, cosine)
+    })
+}
+
+/// Table of what a thin film changes of the dielectric's albedo, untinted, beside that of [`rough_albedo_table`].
+pub fn film_table(material: &Material<f64>, tables: &[f32], samples: u32, is_inside: bool) -> Vec<f32> {
+    let terms = FresnelTerms {
+        tint: Vec3::ONE,
+        weight: 1.0,
+        ..material.fresnel_terms(is_inside).of_dielectric()
+    };
+    table_of(material, tables, samples, is_inside, |cosine| {
+        color_node(film_change_of_dielectric(&terms, cosine))
+    })
+}
+
+fn color_node(color: Vec3<f64>) -> [f64; 4] {
+    [color.x, color.y, color.z, 0.0]
+}
+
+/// Means at the nodes of a table, in rows over the roughness or the azimuth where the material's tables are.
+fn table_of(
     material: &Material<f64>,
     tables: &[f32],
     samples: u32,
     is_inside: bool,
-    is_of_film: bool,
+    factors: impl Fn(f64) -> [f64; 4] + Sync,
 ) -> Vec<f32> {
-    let terms = material.fresnel_terms(is_inside);
-    let film = FresnelTerms {
-        tint: Vec3::splat(1.0),
-        weight: 1.0,
-        ..terms.of_dielectric()
+    let steps = if material.has_rough_tables == 0 {
+        1
+    } else {
+        ROUGHNESS_NODES
     };
     let means = |index: usize| {
         let mut shape = material.shape(tables);
         let step = index / ALBEDO_NODES;
         let turn = material.is_over_azimuth().then(|| node_turn(step, shape.anisotropy));
-        if turn.is_none() {
+        if steps > 1 && turn.is_none() {
             shape.roughness = step as f64 / (ROUGHNESS_NODES - 1) as f64;
         }
-        let factors = |cosine: f64| match is_of_film {
-            true => {
-                let [r, g, b] = film_change_of_dielectric(&film, cosine).to_f64();
-                [r, g, b, 0.0]
-            }
-            false => fresnel_basis(&terms, cosine),
-        };
-        node_means(
-            index % ALBEDO_NODES,
-            turn,
-            is_inside,
-            material,
-            &shape,
-            samples,
-            factors,
-        )
+        let node = index % ALBEDO_NODES;
+        node_means(node, turn, is_inside, material, &shape, samples, &factors)
     };
-    let nodes = parallel::map(ROUGHNESS_NODES * ALBEDO_NODES, means).into_flattened();
+    let nodes = parallel::map(steps * ALBEDO_NODES, means).into_flattened();
     nodes.into_iter().map(|x| x as f32).collect()
 }
 
