@@ -18,7 +18,7 @@ fn interface_gain(material: Material, surface: Surface, shape: LobeShape) -> vec
         let energy = select(energies.y, energies.z, is_within(material, surface));
         kept = select(kept, vec3f(energy), vec3u(0u, 1u, 2u) >= vec3u(channel));
     }
-    return 1.0 / max(kept, vec3f(1e-6));
+    return 1.0 / kept;
 }
 
 fn scattered_again(

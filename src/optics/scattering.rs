@@ -33,7 +33,7 @@ inlined! {
         let is_within = surface.is_within(material);
         let gain = |channel: usize| {
             let [_, outside, inside] = kept_energies(material, surface, shape, channel);
-            T::ONE / T::select(is_within, inside, outside).max(T::from_f64(1e-6))
+            T::ONE / T::select(is_within, inside, outside)
         };
         let first = gain(0);
         if material.has_film == 0 || !material.transmits().any() {
@@ -105,6 +105,9 @@ inlined! {
     }
 }
 
+/// The least energy of a table: no lobe keeps less, but few samples may find none, and the gain is one over it.
+const LEAST_KEPT: f32 = 0.01;
+
 /// Table of the energies that a material's lobe keeps, over the root of the view's cosine, and over the roughness or the
 /// azimuth if its albedo tables are: of a white metal, of a clear interface from outside and from within, 0. One for each channel follows
 /// the other where a film shares the light of an interface. `samples` per node.
@@ -151,7 +154,7 @@ pub fn scattering_table(material: &Material<f64>, samples: u32) -> Vec<f32> {
     };
     let table = |channel: usize| {
         let of_node = move |[metal, outside, inside]: &[Vec3<f64>; 3]| {
-            let numbers = [metal, outside, inside].map(|energy| energy.to_f64()[channel] as f32);
+            let numbers = [metal, outside, inside].map(|energy| (energy.to_f64()[channel] as f32).max(LEAST_KEPT));
             [numbers[0], numbers[1], numbers[2], 0.0]
         };
         energies.iter().flat_map(of_node)

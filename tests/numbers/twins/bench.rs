@@ -9,7 +9,7 @@ use glossmith::gpu::layout::Globals;
 use glossmith::gpu::scene_group::{self, SceneGroup};
 use glossmith::gpu::{AdapterKind, GpuAdapter, GpuDevice, GpuError, Traversal};
 use glossmith::job::{BackgroundKind, Settings, Strategy};
-use glossmith::optics::albedo::{albedo_table, rough_albedo_table};
+use glossmith::optics::albedo::{albedo_table, film_table, rough_albedo_table};
 use glossmith::optics::curve::{CUSTOM_INTERVALS, Curve, custom_table};
 use glossmith::optics::fresnel::Fresnel;
 use glossmith::optics::lobe::{Horizon, Lobe};
@@ -98,10 +98,6 @@ pub static SCENE: LazyLock<Scene> = LazyLock::new(|| {
         for curve in Curve::ALL {
             for fresnel in Fresnel::ALL {
                 let mut material = random_material(&mut rng, *lobe, *curve, *fresnel);
-                if matches!(fresnel, Fresnel::None | Fresnel::Conductor) {
-                    // Materials are compiled so: only the exact equations know total reflection.
-                    material.transmission_weight = 0.0;
-                }
                 material.lobe_table = curves[rng.below(CUSTOM_CURVES)];
                 let mut texture = || {
                     let record = rng.below(2 * textures.records.len());
@@ -194,7 +190,7 @@ pub static SCENE: LazyLock<Scene> = LazyLock::new(|| {
                 return append_table(&mut tables, &table);
             }
             let [plain, film] =
-                [false, true].map(|is_film| rough_albedo_table(&of, &tables, ALBEDO_SAMPLES, is_inside, is_film));
+                [rough_albedo_table, film_table].map(|table| table(&of, &tables, ALBEDO_SAMPLES, is_inside));
             let start = append_table(&mut tables, &plain);
             append_table(&mut tables, &film);
             start
