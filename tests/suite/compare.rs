@@ -100,7 +100,7 @@ fn every_view_shows_what_it_says() {
         "the background does not differ: {background:?}"
     );
 
-    harness.get_by_role_and_label(Role::Button, "Side by side").click();
+    harness.click(Role::Button, "Side by side");
     settle(&mut harness);
     let [a, b] = [colors(&mut harness, [0.25, 0.5]), colors(&mut harness, [0.75, 0.5])];
     assert_ne!(a, b);

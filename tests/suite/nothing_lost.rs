@@ -74,7 +74,7 @@ fn closes_by_itself(harness: &mut Editor) {
 }
 
 fn press(harness: &mut Editor, label: &str) {
-    harness.get_by_role_and_label(Role::Button, label).click();
+    harness.click(Role::Button, label);
     harness.step();
 }
 

@@ -275,7 +275,7 @@ fn a_lobe_is_chosen_from_its_menu_and_what_does_not_apply_goes() {
     assert!(harness.has("Specular curve"));
     harness.click(Role::ComboBox, "Specular lobe");
     let label = Lobe::Ggx.label();
-    harness.get_by_role_and_label(Role::Button, label).click();
+    harness.click(Role::Button, label);
     settle(&mut harness);
     assert_eq!(harness.document().materials[0].lobe, Lobe::Ggx);
     assert!(!harness.has("Specular curve"), "GGX has no curve");
@@ -366,7 +366,7 @@ fn every_panel_and_sheet_has_named_inputs() {
 fn a_preset_is_one_click_and_one_undo() {
     let mut harness = editor();
     let before = harness.document().clone();
-    harness.get_by_role_and_label(Role::Button, "Rubber").click();
+    harness.click(Role::Button, "Rubber");
     settle(&mut harness);
     let rubber = PRESETS
         .iter()

@@ -28,7 +28,7 @@ fn projects_are_saved_under_the_ending_of_their_kind() {
     });
     let path = folder.path().join("proj").display().to_string();
     harness.write("Path", &path);
-    harness.get_by_role_and_label(Role::Button, "Save").click();
+    harness.click(Role::Button, "Save");
     let named = folder.path().join("proj.glossmith.json");
     wait(&mut harness, "the project", |_| named.is_file());
 }

@@ -1,6 +1,7 @@
 //! Files for other programs, made and opened in the window.
 
 use crate::ui::{Editor, editor, request, see, see_label, wait};
+use crate::ui_hands::Hands as _;
 use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable as _;
 use glossmith::app::actions::{Action, Command};
@@ -20,7 +21,7 @@ fn type_path(harness: &mut Editor, path: &std::path::Path) {
     let field = harness.get_by_role_and_label(Role::TextInput, "Path");
     field.set_text_value_accesskit(&path.display().to_string());
     harness.run_steps(2);
-    harness.get_by_role_and_label(Role::Button, "Save").click();
+    harness.click(Role::Button, "Save");
     harness.run_steps(2);
 }
 
@@ -40,12 +41,12 @@ fn what_an_export_loses_is_shown_before_it_is_written() {
         assert!(harness.query_all_by_label_contains(words).count() > 0, "{words}");
     }
     assert!(harness.query_by_label_contains("two balls differ").is_some());
-    harness.get_by_role_and_label(Role::Button, "Cancel").click();
+    harness.click(Role::Button, "Cancel");
     harness.run_steps(3);
     assert!(harness.query_by_label("Write the file").is_none() && !path.exists());
     ask_for(&mut harness, &path);
     see_label(&mut harness, "Write the file");
-    harness.get_by_role_and_label(Role::Button, "Write the file").click();
+    harness.click(Role::Button, "Write the file");
     wait(&mut harness, "the file", |app| {
         app.messages().iter().any(|text| text.contains("Exported"))
     });

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use egui::Rect;
 use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable as _;
 use glossmith::app::actions::{Action, Command};
@@ -16,7 +17,7 @@ pub(super) trait Hands {
     fn has(&self, label: &str) -> bool;
     /// Brings a panel to the front.
     fn reveal(&mut self, pane: Pane);
-    /// Clicks with the mouse.
+    /// Clicks with the mouse, once the control rests: what a thread answered may move it in the next frame.
     fn click(&mut self, role: Role, label: &str);
     /// Clicks as a screen reader does, also what is covered or scrolled away.
     fn tap(&mut self, role: Role, label: &str);
@@ -43,6 +44,12 @@ impl Hands for Editor {
     }
 
     fn click(&mut self, role: Role, label: &str) {
+        let place = |harness: &Self| harness.get_by_role_and_label(role, label).rect();
+        let mut before = Rect::NOTHING;
+        while before != place(self) {
+            before = place(self);
+            self.step();
+        }
         self.get_by_role_and_label(role, label).click();
         self.run_steps(3);
     }

@@ -78,7 +78,7 @@ fn the_queue_is_paused_reordered_called_off_and_asked_about() {
     // What is edited afterwards is no part of it.
     request(&mut harness, Action::LookFrom(90.0, 0.0));
     settle(&mut harness);
-    harness.get_by_role_and_label(Role::CheckBox, "Pause the queue").click();
+    harness.click(Role::CheckBox, "Pause the queue");
     wait_for_words(&mut harness, "second.exr: 3 samples per pixel");
     assert!(!path("first.png").exists());
     see(&mut harness, "the turn under way", |harness| {

@@ -104,7 +104,7 @@ fn a_reference_picture_is_shown_under_over_and_beside_the_render() {
         harness.query_by_role_and_label(Role::TextInput, "Path").is_some()
     });
     harness.write("Path", &file.display().to_string());
-    harness.get_by_role_and_label(Role::Button, "Open").click();
+    harness.click(Role::Button, "Open");
     let named = |harness: &Editor, place: &str| {
         let name = format!("Reference image {place} the render");
         harness.query_by_label(&name).map(|picture| picture.rect())

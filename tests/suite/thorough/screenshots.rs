@@ -90,7 +90,7 @@ fn worked_in(folder: &Path, size: [u32; 2]) -> Editor {
     harness.command(Command::Turntable);
     harness.run_steps(3);
     press(&mut harness, "Add to the queue");
-    harness.get_by_role_and_label(Role::CheckBox, "Pause the queue").click();
+    harness.click(Role::CheckBox, "Pause the queue");
     let viewport = harness.get_by_label("Viewport").rect();
     harness.hover_at(viewport.center() + Vec2::new(-0.04 * viewport.width(), 0.0));
     harness.run_steps(3);
