@@ -70,6 +70,6 @@ pictures: ## Make the images of the documentation again (GLOSSMITH=PROGRAM takes
 	@scripts/setup pictures
 	scripts/pictures
 
-mutants: ## Mutation testing (MINUTES=60 SEED=1; docs/MUTANTS.md)
+mutants: ## Mutation testing (MINUTES=60 SEED=1; CONTRIBUTING.md)
 	@scripts/setup test
 	scripts/mutants $(or $(MINUTES),60) $(or $(SEED),1)

@@ -108,7 +108,7 @@ fn open_window(arguments: Arguments) -> anyhow::Result<()> {
     ));
     glossmith::cli::render_default_scene(&arguments.files, arguments.engine)?;
     console::message_line(format_args!(
-        "Next: `glossmith render --help` lists what can be rendered; on a desktop the editor opens here."
+        "Next: `make run ARGS=\"render --help\"` lists what can be rendered; on a desktop the editor opens here."
     ));
     Ok(())
 }

@@ -14,7 +14,7 @@ struct FresnelTerms {
     ior: f32,
     eta: vec3f,
     k: vec3f,
-    coat: f32,
+    before: f32,
     has_film: bool,
     film: FilmTerms,
 }
@@ -72,8 +72,9 @@ fn fresnel_parts(terms: FresnelTerms, cosine: f32) -> FresnelParts {
     if terms.model == FRESNEL_SCHLICK {
         dielectric = fresnel_schlick(terms.tint * fresnel_f0(terms.ior), cosine);
     }
-    let metal = fresnel_metal(terms.metal_f0, terms.edge_tint, cosine) * terms.metal_tint;
-    var parts = FresnelParts(terms.weight * dielectric, metal);
+    var parts = FresnelParts(
+        terms.weight * dielectric, fresnel_metal(terms.metal_f0, terms.edge_tint, cosine) * terms.metal_tint,
+    );
     if shows_film(terms) {
         parts.dielectric = saturate(parts.dielectric + film_change_of_dielectric(terms, cosine));
         parts.metal = saturate(parts.metal + film_change_of_metal(terms, cosine));

@@ -11,6 +11,11 @@ struct Surface {
     is_inside: bool,
 }
 
+// Between the view and the shading normal.
+fn view_cosine(surface: Surface) -> f32 {
+    return dot(surface.frame.normal, surface.wo);
+}
+
 fn material_shape(material: Material) -> LobeShape {
     return LobeShape(
         planned(material.lobe, PLAN_LOBE), planned(material.curve, PLAN_CURVE), planned(material.horizon, PLAN_HORIZON),
@@ -37,7 +42,6 @@ fn reflecting_ior_ahead(material: Material, is_inside: bool) -> f32 {
     return select(material.reflecting_ior, 1.0 / material.ior, is_inside && material_transmits(material));
 }
 
-// The index of what is reflected under a coat of this weight.
 fn ior_under_coat(material: Material, weight: f32) -> f32 {
     let ior = material.bare_ior + (material.coated_ior - material.bare_ior) * weight;
     let root = sqrt(min(fresnel_f0(ior) * material.specular_weight, 0.99));
@@ -48,11 +52,26 @@ fn has_coated_table(material: Material) -> bool {
     return material.fresnel != FRESNEL_CONDUCTOR && has_flag(material, COATS_BASE) && material.coat_texture != NO_TEXTURE;
 }
 
+fn has_varied_blur(material: Material) -> bool {
+    let of_coat = material.coat_texture != NO_TEXTURE || material.coat_roughness_texture != NO_TEXTURE;
+    return PLAN_COAT && (PLAN_ROUGHNESS_TEXTURES || PLAN_COAT_TEXTURES) && material.coat_blur > 0.0
+        && (of_coat || material.roughness_texture != NO_TEXTURE);
+}
+
+fn follow_coat(material: ptr<function, Material>) {
+    if PLAN_COAT_TEXTURES && has_coated_table(*material) {
+        (*material).reflecting_ior = ior_under_coat(*material, (*material).coat_weight);
+    }
+    if PLAN_COAT_TEXTURES && (*material).coat_roughness_texture != NO_TEXTURE && (*material).coat_blur > 0.0 {
+        let square = (*material).coat_roughness * (*material).coat_roughness;
+        (*material).coat_blur = 2.0 * square * square;
+    }
+}
+
 fn has_film_table(material: Material) -> bool {
     return (material.has_rough_tables & HOLDS_FILM) != 0u;
 }
 
-// GGX's roughness under a coat of this weight.
 fn roughness_under_coat(material: Material, roughness: f32, weight: f32) -> f32 {
     let square = roughness * roughness;
     return roughness + (sqrt(sqrt(min(square * square + material.coat_blur, 1.0))) - roughness) * weight;
@@ -62,22 +81,24 @@ fn material_fresnel_terms(material: Material, is_inside: bool) -> FresnelTerms {
     let is_bare = is_inside && material_transmits(material);
     let tint = select(material.specular_color, WHITE, is_bare);
     let weight = select(material.specular_weight, 1.0, is_bare);
-    let of_dielectric = select(weight, 1.0, has_flag(material, WEIGHS_INDEX));
-    let coat = select(ior_of_coat(material), 1.0, is_bare);
+    let before = select(ior_of_coat(material), 1.0, is_bare);
     return FresnelTerms(
         planned(material.fresnel, PLAN_FRESNEL), material.base_color, material.metalness, material.edge_tint, tint,
-        select(weight * tint, WHITE, has_flag(material, SPARES_METAL)), of_dielectric, reflecting_ior_ahead(material, is_inside),
-        material.eta / coat, material.k / coat, coat, material.has_film == 1u, material_film_terms(material, is_bare, coat),
+        select(weight * tint, WHITE, has_flag(material, SPARES_METAL)),
+        select(weight, 1.0, has_flag(material, WEIGHS_INDEX)), reflecting_ior_ahead(material, is_inside),
+        material.eta / before, material.k / before, before, material.has_film == 1u, material_film_terms(material, is_bare, before),
     );
 }
 
-fn material_film_terms(material: Material, is_within: bool, coat: f32) -> FilmTerms {
+fn material_film_terms(material: Material, is_within: bool, outside: f32) -> FilmTerms {
     if !PLAN_THIN_FILM {
         return FilmTerms();
     }
-    let before = select(coat, material.ior, is_within);
-    let behind = select(material.ior, 1.0, is_within) / before;
-    return FilmTerms(material.film_weight, material.film_ior / before, behind, material.film_path * before);
+    let before = select(outside, material.ior, is_within);
+    return FilmTerms(
+        material.film_weight, material.film_ior / before, select(material.ior, 1.0, is_within) / before,
+        material.film_path * before, has_flag(material, FILM_BANDS),
+    );
 }
 
 // The index before the specular interface.
@@ -103,10 +124,9 @@ fn table_row(material: Material, surface: Surface) -> f32 {
 }
 
 fn material_has_holes(material: Material) -> bool {
-    let is_masked = material.alpha_cutoff > material.opacity;
-    let is_clear = material.alpha_cutoff < 0.0 && material.opacity < 1.0;
+    let is_constant = material.alpha_cutoff > material.opacity || (material.alpha_cutoff < 0.0 && material.opacity < 1.0);
     let is_varied = material.opacity_texture != NO_TEXTURE || has_vertex_flag(material, VERTEX_OPACITY);
-    return PLAN_ALPHA && (is_masked || is_clear || is_varied);
+    return PLAN_ALPHA && (is_constant || is_varied);
 }
 
 fn has_flag(material: Material, flag: u32) -> bool {
@@ -138,6 +158,6 @@ fn material_has_specular(material: Material) -> bool {
     }
     let may_be_metal = material.metalness > 0.0 || material.metalness_texture != NO_TEXTURE;
     let is_spared = may_be_metal && has_flag(material, SPARES_METAL);
-    let is_film = PLAN_THIN_FILM && material.has_film == 1u && has_flag(material, WEIGHS_INDEX);
-    return material.specular_weight > 0.0 || is_spared || material_transmits(material) || is_film;
+    return material.specular_weight > 0.0 || is_spared || material_transmits(material)
+        || (PLAN_THIN_FILM && material.has_film == 1u && has_flag(material, WEIGHS_INDEX));
 }

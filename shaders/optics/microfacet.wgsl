@@ -1,5 +1,6 @@
 // Common part of the microfacet lobes. Twin of src/optics/microfacet.rs; local frame, n = +z.
 #import "optics/frame"
+#import "optics/fresnel"
 
 struct Facet {
     wo: vec3f,
@@ -10,12 +11,11 @@ struct Facet {
 }
 
 fn facet(frame: Frame, wo_world: vec3f, wi_world: vec3f) -> Facet {
-    let sum = wo_world + wi_world;
     return Facet(
         local_from_world(frame, wo_world),
         local_from_world(frame, wi_world),
-        local_from_world(frame, normalize_or(sum, frame.normal)),
-        min(0.5 * length(sum), 1.0),
+        local_from_world(frame, normalize_or(wo_world + wi_world, frame.normal)),
+        half_vector_cosine(wo_world, wi_world),
     );
 }
 

@@ -42,7 +42,6 @@ fn facet_density_factor(frame: Frame, wo: vec3f, wi: vec3f, eta: f32, along: vec
     let h = along / sqrt(square);
     let before = dot(wo, h);
     let behind = -dot(wi, h);
-    let value = 4.0 * before * eta * eta * behind / square;
-    let is_seen = before > 0.0 && dot(frame.normal, h) > 0.0;
-    return select(0.0, value, dot(frame.normal, wi) < 0.0 && is_seen && behind > 0.0);
+    let is_seen = before > 0.0 && dot(frame.normal, h) > 0.0 && dot(frame.normal, wi) < 0.0 && behind > 0.0;
+    return select(0.0, 4.0 * before * eta * eta * behind / square, is_seen);
 }

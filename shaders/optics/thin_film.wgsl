@@ -8,6 +8,7 @@ struct FilmTerms {
     ior: f32,
     behind: f32,
     path: vec3f,
+    has_bands: bool,
 }
 
 fn film_change_of_dielectric(terms: FresnelTerms, cosine: f32) -> vec3f {
@@ -25,92 +26,100 @@ fn film_change_of_metal(terms: FresnelTerms, cosine: f32) -> vec3f {
 }
 
 fn cosine_in_coat(terms: FresnelTerms, cosine: f32) -> f32 {
-    return select(cosine, safe_sqrt(refracted_square(cosine, terms.coat)) / terms.coat, terms.coat != 1.0);
+    return select(cosine, safe_sqrt(refracted_square(cosine, terms.before)) / terms.before, terms.before != 1.0);
 }
 
 // `height` is negative where it is not known.
 fn film_passed(terms: FresnelTerms, from_normal: f32, height: f32) -> vec3f {
     let cosine = max(cosine_in_coat(terms, from_normal), LEAST_FILM_COSINE);
     let index = terms.film.behind;
-    let beyond = select(height, safe_sqrt(refracted_square(cosine, index)), height < 0.0 || terms.coat != 1.0);
-    let behind = vec4f(beyond, 0.0, beyond / (index * index), 0.0);
-    let bare = entered_bare(cosine, behind);
-    return (entered(terms.film, cosine, mat3x4f(behind, behind, behind)) - vec3f(bare)) * terms.film.weight;
+    let bent = safe_sqrt(refracted_square(cosine, index));
+    let beyond = vec3f(select(height, bent, height < 0.0 || terms.before != 1.0));
+    let behind = mat4x3f(beyond, vec3f(), beyond / (index * index), vec3f());
+    return (entered(terms, 1.0, cosine, behind) - entered(terms, 0.0, cosine, behind)) * terms.film.weight;
 }
 
 fn film_on_conductor(terms: FresnelTerms, from_normal: f32, bare: vec3f) -> vec3f {
     let cosine = max(from_normal, LEAST_FILM_COSINE);
-    var behind = mat3x4f();
-    for (var channel = 0u; channel < 3u; channel++) {
-        behind[channel] = admittances(cosine, terms.eta[channel], terms.k[channel]);
-    }
-    return mix(bare, max(1.0 - entered(terms.film, cosine, behind), vec3f()), terms.film.weight);
+    let passed = entered(terms, 1.0, cosine, admittances(cosine, terms.eta, terms.k));
+    return mix(bare, saturate(1.0 - passed), terms.film.weight);
 }
 
 fn film_on_metal(terms: FresnelTerms, cosine: f32) -> vec3f {
-    var behind = mat3x4f();
-    var bare = vec3f();
-    for (var channel = 0u; channel < 3u; channel++) {
-        let index = index_of_colors(terms.metal_f0[channel], terms.edge_tint[channel]);
-        behind[channel] = admittances(cosine, index.x, index.y);
-        bare[channel] = max(entered_bare(cosine, behind[channel]), FILM_TINY);
-    }
-    let scale = entered(terms.film, cosine, behind) / bare;
+    let index = index_of_colors(terms.metal_f0, terms.edge_tint);
+    let behind = admittances(cosine, index[0], index[1]);
+    let scale = entered(terms, 1.0, cosine, behind)
+        / max(entered(terms, 0.0, cosine, behind), vec3f(FILM_TINY));
     let reflected = fresnel_metal(terms.metal_f0, terms.edge_tint, cosine);
     let lost = 1.0 - reflected;
-    return max((lost - lost * scale) * terms.film.weight + reflected, vec3f()) - reflected;
+    return saturate((lost - lost * scale) * terms.film.weight + reflected) - reflected;
 }
 
-fn index_of_colors(f0: f32, edge: f32) -> vec2f {
-    let r = min(f0, LARGEST_FILM_F0);
+// Eta and k of each channel.
+fn index_of_colors(f0: vec3f, edge: vec3f) -> mat2x3f {
+    let r = min(f0, vec3f(LARGEST_FILM_F0));
     let root = sqrt(r);
     let eta = edge * (1.0 - r) / (1.0 + r) + (1.0 - edge) * (1.0 + root) / (1.0 - root);
-    return vec2f(eta, safe_sqrt(((eta + 1.0) * (eta + 1.0) * r - (eta - 1.0) * (eta - 1.0)) / (1.0 - r)));
+    return mat2x3f(eta, sqrt(max(((eta + 1.0) * (eta + 1.0) * r - (eta - 1.0) * (eta - 1.0)) / (1.0 - r), vec3f())));
 }
 
-// For both polarisations: perpendicular, then parallel, each real and imaginary.
-fn admittances(cosine: f32, eta: f32, k: f32) -> vec4f {
-    let x = refracted_square(cosine, eta) - k * k;
+// By channel: perpendicular, then parallel, each real and imaginary.
+fn admittances(cosine: f32, eta: vec3f, k: vec3f) -> mat4x3f {
+    let tiny = vec3f(FILM_TINY);
+    let x = (eta - 1.0) * (eta + 1.0) + cosine * cosine - k * k;
     let y = 2.0 * eta * k;
     // The root of x + iy, without cancellation.
     let leg = sqrt(0.5 * (sqrt(x * x + y * y) + abs(x)));
-    let other = 0.5 * y / max(leg, FILM_TINY);
-    let root = select(vec2f(leg, other), vec2f(other, leg), x < 0.0);
+    let other = 0.5 * y / max(leg, tiny);
+    let re = select(leg, other, x < vec3f());
+    let im = select(other, leg, x < vec3f());
     // Over the squared index for the other polarisation.
     let square = (eta - k) * (eta + k);
     let size = eta * eta + k * k;
-    let scale = 1.0 / max(size * size, FILM_TINY);
-    return vec4f(root, max((root.x * square + root.y * y) * scale, 0.0), (root.y * square - root.x * y) * scale);
+    let scale = 1.0 / max(size * size, tiny);
+    return mat4x3f(re, im, max((re * square + im * y) * scale, vec3f()), (im * square - re * y) * scale);
 }
 
-fn entered(film: FilmTerms, cosine: f32, behind: mat3x4f) -> vec3f {
+// The share of unpolarised light that enters the media behind a film, as thick as it is or of no thickness.
+fn entered(terms: FresnelTerms, thickness: f32, cosine: f32, behind: mat4x3f) -> vec3f {
     // Beyond the film's own critical angle it counts as one that light just grazes.
-    let square = max(refracted_square(cosine, film.ior), 0.0);
-    let height = sqrt(square);
-    let index_square = film.ior * film.ior;
+    let film = terms.film;
+    let path = film.path * thickness;
+    let height_square = max(refracted_square(cosine, film.ior), 0.0);
+    let phase = path * sqrt(height_square);
+    let turns = phase * (0.5 * INV_PI);
+    let circle = transpose(mat3x2f(unit_circle(turns.x), unit_circle(turns.y), unit_circle(turns.z)));
+    let across = path * select(circle[1] / max(phase, vec3f(FILM_TINY)), WHITE, phase < vec3f(1e-4));
     var media = behind;
-    var sum = vec3f();
-    for (var channel = 0u; channel < 3u; channel++) {
-        let path = film.path[channel];
-        let phase = path * height;
-        let circle = unit_circle(phase * (0.5 * INV_PI));
-        let across = path * select(circle.y / max(phase, FILM_TINY), 1.0, phase < 1e-4);
-        let squares = vec2f(square, square / (index_square * index_square));
-        sum[channel] = entered_polarised(cosine, media[channel], squares, circle.x, vec2f(across, across * index_square));
+    var share = vec3f();
+    // A loop over the polarisations.
+    for (var i = 0u; i < 4u; i += 2u) {
+        let re = media[i];
+        let im = media[i + 1u];
+        let scale = select(film.ior * film.ior, 1.0, i == 0u);
+        let film_square = height_square / (scale * scale);
+        let sum = cosine + re;
+        let product = cosine * re + film_square;
+        let far = cosine * im;
+        let over = across * scale;
+        let x = sum * circle[0] + far * over;
+        let y = im * circle[0] - product * over;
+        let square = x * x + y * y;
+        var part = 2.0 * cosine * re / max(square, vec3f(FILM_TINY));
+        if PLAN_FILM_BANDS && film.has_bands {
+            // The mean of the square over all phases, and of the share's denominator.
+            let level = 0.5 * (sum * sum + im * im + (product * product + far * far) / film_square);
+            let mean = (sum * product + far * im) / sqrt(film_square);
+            let damping = exp(max(phase - UNBANDED_PHASE, vec3f()) * (-2.0 * BAND_WIDTH));
+            let fade = 1.0 - damping * damping;
+            let lost = 1.0 - damping;
+            let banded = (fade * level / mean + 2.0 - fade)
+                / (2.0 * damping * square + lost * lost * level + fade * mean);
+            part = select(part, 2.0 * cosine * re * banded, damping < WHITE);
+        }
+        share += part;
     }
-    return sum;
-}
-
-fn entered_bare(cosine: f32, behind: vec4f) -> f32 {
-    return entered_polarised(cosine, behind, vec2f(), 1.0, vec2f());
-}
-
-// The mean of both polarisations, which are the components here.
-fn entered_polarised(before: f32, behind: vec4f, film_square: vec2f, along: f32, across: vec2f) -> f32 {
-    let x = (before + behind.xz) * along + before * behind.yw * across;
-    let y = behind.yw * along - (before * behind.xz + film_square) * across;
-    let entered = 4.0 * before * behind.xz / max(x * x + y * y, vec2f(FILM_TINY));
-    return 0.5 * (entered.x + entered.y);
+    return share;
 }
 
 // The mean facet's cosine, and the lobe's albedo.

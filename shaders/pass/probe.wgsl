@@ -50,7 +50,7 @@ fn answer_fresnel(q: u32, a: u32) {
         share = fresnel_conductor(asked(q + 1u), asked(q + 2u), asked(q + 3u));
     }
     if questions[q] > 1u {
-        let film = FilmTerms(asked(q + 4u), asked(q + 5u), asked(q + 2u), vec3f(asked(q + 6u)));
+        let film = FilmTerms(asked(q + 4u), asked(q + 5u), asked(q + 2u), vec3f(asked(q + 6u)), false);
         let terms = FresnelTerms(
             select(FRESNEL_CONDUCTOR, FRESNEL_DIELECTRIC, questions[q] == 2u), WHITE, 0.0, WHITE, WHITE, WHITE, 1.0,
             asked(q + 2u), vec3f(asked(q + 2u)), vec3f(asked(q + 3u)), 1.0, true, film,

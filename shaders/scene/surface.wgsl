@@ -70,8 +70,7 @@ fn surface_of(hit: Hit, direction: vec3f, slot: u32, material: Material) -> Surf
     let side = select(1.0, -1.0, dot(smoothed, normal) < 0.0);
     let smooth_normal = bent_normal(side * smoothed, wo);
     var uvs = Uvs();
-    if PLAN_COLOR_TEXTURES || PLAN_ROUGHNESS_TEXTURES || PLAN_EMISSION_TEXTURES || PLAN_NORMAL_MAPS
-        || PLAN_COAT_TEXTURES || PLAN_COAT_NORMALS || PLAN_FILM_TEXTURES || PLAN_FUZZ_TEXTURES {
+    if planned_textures() != 0u || PLAN_NORMAL_MAPS || PLAN_COAT_NORMALS {
         uvs = hit_uvs(hit, material);
     }
     let tangent = vec4f(

@@ -125,54 +125,29 @@ fn textured_material(material: Material, uvs: Uvs, vertex_color: vec3f) -> Mater
     if has_vertex_flag(material, VERTEX_EMISSION) {
         at_point.emission *= vertex_color;
     }
-    // A map with both roughness and metalness is looked up once.
-    let has_both = material.metalness_texture == material.roughness_texture;
-    let planned = planned_textures() - (u32(PLAN_ROUGHNESS_TEXTURES && has_both) << TEXTURE_METALNESS);
-    var rough = material.texture_roughness;
-    // A loop, so that the look-up's code is there once; over the set bits, because drivers unroll a loop of known length.
-    for (var wanted = planned; wanted != 0u; wanted &= wanted - 1u) {
+    // A loop, so that the look-up's code is there once; over the set bits, because drivers unroll a loop of known length. A
+    // texture of targets in a row is looked up once.
+    var known = NO_TEXTURE;
+    var value = vec4f();
+    for (var wanted = planned_textures(); wanted != 0u; wanted &= wanted - 1u) {
         let kind = firstTrailingBit(wanted);
         let texture = material_texture(material, kind);
         if texture == NO_TEXTURE {
             continue;
         }
-        let value = texture_lookup(texture, uvs);
-        switch kind {
-            case TEXTURE_BASE_COLOR: {
-                at_point.base_color *= value.xyz;
-                at_point.transmission_tint *= value.xyz;
-            }
-            case TEXTURE_ROUGHNESS: {
-                rough *= value.y;
-                at_point.metalness *= select(1.0, value.z, has_both);
-            }
-            case TEXTURE_METALNESS: { at_point.metalness *= value.z; }
-            case TEXTURE_EMISSION: { at_point.emission *= value.xyz; }
-            case TEXTURE_COAT: { at_point.coat_weight *= value.x; }
-            case TEXTURE_COAT_ROUGHNESS: {
-                at_point.coat_roughness *= value.y;
-                let square = at_point.coat_roughness * at_point.coat_roughness;
-                at_point.coat_blur = select(material.coat_blur, 2.0 * square * square, material.coat_blur > 0.0);
-            }
-            case TEXTURE_COAT_COLOR: { at_point.coat_color *= value.xyz; }
-            case TEXTURE_FILM: { at_point.film_weight *= value.x; }
-            case TEXTURE_FILM_THICKNESS: { at_point.film_path *= value.x; }
-            case TEXTURE_FUZZ: { at_point.fuzz_weight *= value.x; }
-            case TEXTURE_FUZZ_COLOR: { at_point.fuzz_color *= value.xyz; }
-            default: { at_point.fuzz_roughness = max(material.fuzz_roughness * value.w, FUZZ_ROUGHNESS_MIN); }
+        if texture != known {
+            known = texture;
+            value = texture_lookup(texture, uvs);
         }
+        multiply(&at_point, kind, value);
     }
-    if PLAN_COAT_TEXTURES && has_coated_table(material) {
-        at_point.reflecting_ior = ior_under_coat(material, at_point.coat_weight);
-    }
-    let has_roughness = PLAN_ROUGHNESS_TEXTURES && material.roughness_texture != NO_TEXTURE;
-    let coat_varies = material.coat_texture != NO_TEXTURE || material.coat_roughness_texture != NO_TEXTURE;
-    let blurs = PLAN_COAT && material.coat_blur > 0.0 && (has_roughness || (PLAN_COAT_TEXTURES && coat_varies));
-    if has_roughness || blurs {
-        at_point.ggx_roughness = rough;
-        at_point.roughness = rough;
+    at_point.fuzz_roughness = max(at_point.fuzz_roughness, FUZZ_ROUGHNESS_MIN);
+    follow_coat(&at_point);
+    let blurs = has_varied_blur(material);
+    if blurs || (PLAN_ROUGHNESS_TEXTURES && material.roughness_texture != NO_TEXTURE) {
+        at_point.roughness = at_point.ggx_roughness;
         if blurs {
-            at_point.roughness = roughness_under_coat(at_point, rough, at_point.coat_weight);
+            at_point.roughness = roughness_under_coat(at_point, at_point.roughness, at_point.coat_weight);
         }
         if material.roughness_table != NO_TEXTURE {
             at_point.roughness = table_lookup(material.roughness_table, MATCHED_NODES, at_point.roughness);

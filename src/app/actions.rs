@@ -8,7 +8,6 @@ use crate::app::kit::keys;
 use crate::app::pane::Pane;
 use crate::app::services::compare::Rival;
 use crate::app::services::library::Change;
-use crate::app::services::workspaces;
 use crate::document::{ImportLobe, MaterialSettings};
 use crate::named::named;
 use crate::render::EngineChoice;
@@ -77,8 +76,8 @@ pub enum Action {
     /// Brings a panel to the front.
     Reveal(Pane),
     Close(Pane),
-    /// Changes the workspaces, or which is shown.
-    ChangeWorkspaces(workspaces::Change),
+    /// Shows the workspace of a name.
+    UseWorkspace(&'static str),
     /// Shows a parameter of the selected material and gives it the keys.
     Edit(&'static str),
     /// Which lobe the materials of models get that are opened from now on.
@@ -121,7 +120,7 @@ macro_rules! commands {
             pub fn shortcut(self) -> Option<KeyboardShortcut> {
                 match self { $(Self::$name => $shortcut,)* }
             }
-            /// Commands of a menu with the same number stand together.
+            /// Commands of a menu with the same number stand together; from 4 on in a menu of their own, or in the palette alone.
             pub fn group(self) -> u32 {
                 match self { $(Self::$name => $group,)* }
             }
@@ -143,14 +142,14 @@ const fn key(key: Key) -> Option<KeyboardShortcut> {
 commands! {
     New, File, "New", "Starts again, with the default model, light and material.", keys(CTRL, Key::N), 0;
     Open, File, "Open…", "Opens a project, a material, a model or an environment.", keys(CTRL, Key::O), 0;
-    OpenMeasured, File, "Open measured material…", "Opens a measured material (.binary of the MERL database) to match looks with.", None, 0;
-    ModelFile, File, "Model file…", "What became of the parts of the model's file; its scenes, variants and poses.", None, 0;
-    Reload, File, "Reload files", "Reads model and environment again.", keys(CTRL, Key::R), 0;
-    TypePaths, File, "Type file names", "Files are chosen by typing their paths in the window; or again in the system's dialog.", None, 0;
+    OpenMeasured, File, "Open measured material…", "Opens a measured material (.binary of the MERL database) to match looks with.", None, 9;
+    ModelFile, File, "Model file…", "What became of the parts of the model's file; its scenes, variants and poses.", None, 9;
+    Reload, File, "Reload files", "Reads model and environment again.", keys(CTRL, Key::R), 9;
+    TypePaths, File, "Type file names", "Files are chosen by typing their paths in the window; or again in the system's dialog.", None, 9;
     Save, File, "Save project", "Saves materials, light, camera and settings (.glossmith.json).", keys(CTRL, Key::S), 1;
     SaveAs, File, "Save project as…", "Saves the project under another name.", keys(CTRL_SHIFT, Key::S), 1;
     SaveMaterial, File, "Save material…", "Saves the selected material (.json).", None, 1;
-    WatchFolder, File, "Watch a folder…", "Shows the materials and environments of a folder among the presets, as they come and go.", None, 1;
+    WatchFolder, File, "Watch a folder…", "Shows the materials and environments of a folder among the presets, as they come and go.", None, 9;
     SaveToMyPresets, File, "Save to my presets", "Adds the selected material to your own presets.", None, 1;
     Export, File, "Export…", "Exports with a preview of what the format cannot represent.", None, 1;
     SavePicture, File, "Save image…", "Saves what has been rendered so far (.png with the document inside, .exr, .hdr).", keys(CTRL, Key::E), 1;
@@ -164,23 +163,23 @@ commands! {
     ResetCamera, Edit, "Reset camera", "Puts the camera where it was at first.", None, 1;
     CopyMaterial, Edit, "Copy material", "Copies the selected material, to be pasted onto others.", None, 1;
     PasteMaterial, Edit, "Paste material", "Gives the selected materials what was copied.", None, 1;
-    FrameAll, View, "Frame all", "Moves the camera so that the whole model is seen.", key(Key::F), 0;
-    FrameSelected, View, "Frame selected", "Moves the camera so that the selected objects are seen, or the surfaces of the selected material.", keys(Modifiers::SHIFT, Key::F), 0;
-    FrontView, View, "Front view", "Looks from the front, in parallel rays.", key(Key::Num1), 0;
-    SideView, View, "Side view", "Looks from the right side, in parallel rays.", key(Key::Num3), 0;
-    TopView, View, "Top view", "Looks from above, in parallel rays.", key(Key::Num7), 0;
-    ToggleProjection, View, "Perspective or orthographic", "Changes between a perspective and parallel rays.", key(Key::Num5), 0;
-    ShowObjects, View, "Show all objects", "Shows the objects again that were hidden.", None, 0;
-    Compare, View, "Compare A and B", "Shows the material beside another one, or beside another lobe.", key(Key::C), 2;
-    SwapCompared, View, "Swap A and B", "Makes B the document, and what the document was B.", key(Key::X), 2;
-    TakeCompared, View, "Replace A with B", "Applies B's materials and stops comparing.", None, 2;
-    Inspect, View, "Pin the pixel", "The inspector stays at the pixel under the pointer, or follows the pointer again.", key(Key::I), 3;
-    ZoomIn, View, "Magnify the image", "Shows the pixels of the image larger. In the viewport: ctrl and the wheel.", key(Key::Plus), 3;
-    ZoomOut, View, "Less magnified", "Shows the pixels of the image smaller, down to the whole image.", key(Key::Minus), 3;
-    ZoomFit, View, "Whole image", "Shows the whole image again, as large as it fits.", key(Key::Num0), 3;
-    Denoise, View, "Denoise on or off", "Toggles denoising. How and when: Camera & image.", key(Key::D), 2;
-    PreviewTurn, View, "Turntable preview", "Previews a turntable. Esc stops.", key(Key::T), 2;
-    Pin, View, "Pin a snapshot", "Saves material, light and camera with a thumbnail, to come back to.", key(Key::P), 2;
+    FrameAll, View, "Frame all", "Moves the camera so that the whole model is seen.", key(Key::F), 4;
+    FrameSelected, View, "Frame selected", "Moves the camera so that the selected objects are seen, or the surfaces of the selected material.", keys(Modifiers::SHIFT, Key::F), 4;
+    FrontView, View, "Front view", "Looks from the front, in parallel rays.", key(Key::Num1), 4;
+    SideView, View, "Side view", "Looks from the right side, in parallel rays.", key(Key::Num3), 4;
+    TopView, View, "Top view", "Looks from above, in parallel rays.", key(Key::Num7), 4;
+    ToggleProjection, View, "Perspective or orthographic", "Changes between a perspective and parallel rays.", key(Key::Num5), 4;
+    ShowObjects, View, "Show all objects", "Shows the objects again that were hidden.", None, 4;
+    Compare, View, "Compare A and B", "Shows the material beside another one, or beside another lobe.", key(Key::C), 5;
+    SwapCompared, View, "Swap A and B", "Makes B the document, and what the document was B.", key(Key::X), 5;
+    TakeCompared, View, "Replace A with B", "Applies B's materials and stops comparing.", None, 5;
+    Inspect, View, "Pin the pixel", "The inspector stays at the pixel under the pointer, or follows the pointer again.", key(Key::I), 6;
+    ZoomIn, View, "Magnify the image", "Shows the pixels of the image larger. In the viewport: ctrl and the wheel.", key(Key::Plus), 6;
+    ZoomOut, View, "Less magnified", "Shows the pixels of the image smaller, down to the whole image.", key(Key::Minus), 6;
+    ZoomFit, View, "Whole image", "Shows the whole image again, as large as it fits.", key(Key::Num0), 6;
+    Denoise, View, "Denoise on or off", "Toggles denoising. How and when: Camera & image.", key(Key::D), 0;
+    PreviewTurn, View, "Turntable preview", "Previews a turntable. Esc stops.", key(Key::T), 0;
+    Pin, View, "Pin a snapshot", "Saves material, light and camera with a thumbnail, to come back to.", key(Key::P), 0;
     Maximise, View, "Viewport only", "Hides the panels, or shows them again.", key(Key::F11), 1;
     ToggleTheme, View, "Light or dark", "Changes between the light and the dark theme.", None, 1;
     ResetLayout, View, "Reset layout", "Puts the panels of this workspace back to where they were at first.", None, 1;

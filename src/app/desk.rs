@@ -16,13 +16,13 @@ use crate::app::services::messages::Entry;
 use crate::app::services::pictures::Pictures;
 use crate::app::services::recent::Recent;
 use crate::app::services::reference::ReferenceImage;
-use crate::app::services::selection::Selection;
+use crate::app::services::selection::{Selection, Thing};
 use crate::app::services::shelves::Shelves;
 use crate::app::services::viewing::{Pick, Rendering, Viewing};
 use crate::document::{Document, ImportLobe, MaterialSettings, PARAMETERS, Parameter, SETTINGS, setting};
 use crate::render::queue::Queue;
 use crate::render::worker::{Scene, Snapshot};
-use crate::scene::environment::{BUILT_IN, EnvironmentSource};
+use crate::scene::environment::{BUILT_IN, BuiltIn, EnvironmentSource};
 use crate::scene::path_text::file_name;
 use crate::scene::texture::TextureTarget;
 
@@ -70,6 +70,13 @@ pub struct Shared {
     pub queue: Queue,
     /// What is shown beside the render.
     pub reference: ReferenceImage,
+}
+
+/// The environments that are chosen for their light: the palette alone finds the furnace, which tests energy.
+pub fn lights() -> impl Iterator<Item = &'static BuiltIn> {
+    BUILT_IN
+        .iter()
+        .filter(|built_in| built_in.source != EnvironmentSource::Furnace)
 }
 
 /// The angle in plots of lobes at first, degrees.
@@ -127,9 +134,10 @@ impl Desk<'_> {
     /// last.
     pub fn environments(&self, files_max: usize) -> Vec<EnvironmentSource> {
         let current = std::iter::once(self.document.lighting.environment.clone());
-        let mut sources: Vec<_> = BUILT_IN.iter().map(|built_in| built_in.source.clone()).collect();
+        let mut sources: Vec<_> = lights().map(|built_in| built_in.source.clone()).collect();
+        let shipped = sources.len();
         for source in current.chain(self.shared.recent.environments()) {
-            if !sources.contains(&source) && sources.len() - BUILT_IN.len() < files_max {
+            if !sources.contains(&source) && sources.len() < shipped + files_max {
                 sources.push(source);
             }
         }
@@ -160,6 +168,15 @@ impl Desk<'_> {
         let material = Box::new(material.clone());
         self.actions
             .extend([Action::SelectSlot(slot), Action::UseMaterial(material)]);
+    }
+
+    /// Lights up in the viewport what a line under the pointer stands for, and a line what the pointer is over there.
+    pub fn light_up(&mut self, ui: &Ui, response: &Response, thing: Thing) {
+        if response.hovered() {
+            self.shared.selection.hovered = Some(thing);
+        } else if self.shared.selection.lit == Some(thing) {
+            widgets::frame(ui, response.rect);
+        }
     }
 
     /// The slots of the model whose materials are as asked for.
@@ -248,12 +265,14 @@ impl Desk<'_> {
             full: "Samples view angle",
             label: "View angle",
             symbol: "θ",
-            help: "Between the view and the normal. A click in the viewport takes the angle of the place there.",
+            help: "Between the view and the normal.",
         };
         let angle = &mut self.shared.view_angle_deg;
         widgets::value_row(ui, name, angle, VIEW_ANGLE_DEG, |ui, angle| {
             widgets::number(ui, angle, &style)
         });
+        let help = "The next click in the viewport takes the angle of the place there.";
+        self.pick_toggle(ui, Pick::Angle, "Pick angle", help);
     }
 
     /// What A and B are called.

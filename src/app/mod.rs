@@ -206,7 +206,7 @@ impl App {
                 selection: Selection::default(),
                 messages: Vec::new(),
                 pictures: Pictures::new(options.cache),
-                recent: Recent::new(kept.recent),
+                recent: Recent { paths: kept.recent },
                 import_lobe: kept.import_lobe,
                 rendering: Rendering {
                     engine,
@@ -372,7 +372,8 @@ impl App {
                         self.note_opened(path);
                     }
                     self.document.lighting.environment = source;
-                    self.edits.note(ENVIRONMENT_CHANGED, "");
+                    self.match_ground();
+                    self.edits.did(ENVIRONMENT_CHANGED);
                     self.count_as_start(is_start);
                 }
                 Event::LayersMade(path, layers, progress) => {
@@ -436,8 +437,7 @@ impl App {
                 // With the viewport alone all of them can be brought back.
                 let is_open = |pane| !self.is_maximised && layout::is_open(&self.layout, pane);
                 let chosen = (self.shared.import_lobe, self.shared.rendering.engine);
-                let names: Vec<&str> = self.workspaces.names().collect();
-                let panels = ((names.as_slice(), self.workspaces.current()), is_open);
+                let panels = (self.workspaces.current(), is_open);
                 menu::bar(ui, &self.edits, &mut self.shared.recent, chosen, panels, actions);
             });
         egui::Panel::bottom("status")
@@ -445,8 +445,7 @@ impl App {
             .show_separator_line(false)
             .exact_size(theme::BAR_HEIGHT)
             .show(ui, |ui| {
-                let has_numbers = self.workspaces.current() == workspaces::MEASURE;
-                status::show(ui, &snapshot, has_numbers, actions);
+                status::show(ui, &snapshot, self.shared.viewing.measures, actions);
             });
         let ground = frame(theme::ground(ui.visuals().dark_mode), 0);
         egui::CentralPanel::default().frame(ground).show(ui, |ui| {
@@ -457,6 +456,7 @@ impl App {
                 actions,
                 shared: &mut self.shared,
             };
+            desk.shared.viewing.measures = self.workspaces.current() == workspaces::MEASURE;
             self.panels.tick(&mut desk);
             let mut panes = layout::Panes {
                 hidden: layout::hidden_tabs(ui, &self.layout),
@@ -526,7 +526,7 @@ impl eframe::App for App {
         let ctx = ui.ctx().clone();
         settings::fit_to_screen(&ctx);
         self.take_events(&ctx);
-        self.watch_files();
+        self.watch_files(&ctx);
         self.picture_window(&ctx);
         let mut actions = std::mem::take(&mut self.queue);
         keys::hold_typing(&ctx);

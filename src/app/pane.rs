@@ -19,7 +19,7 @@ macro_rules! list {
         $make! {
             /// Materials to start from.
             Presets, "Presets", UpperLeft, presets::PresetsPanel, "reference/window.md#presets";
-            /// Objects, materials, lights and cameras.
+            /// Objects.
             Scene, "Scene", UpperLeft, scene::ScenePanel, "reference/window.md#scene";
             Snapshots, "Snapshots", UpperLeft, snapshots::SnapshotsPanel, "how-to/compare.md#snapshots";
             /// Renders that go on beside.
@@ -31,7 +31,7 @@ macro_rules! list {
             Effects, "Effects", LowerLeft, effects::EffectsPanel, "how-to/profile.md";
             /// Techniques against each other.
             Race, "Race", LowerLeft, race::RacePanel, "how-to/profile.md#race-techniques";
-            Material, "Material", UpperRight, material::MaterialPanel, "reference/materials.md";
+            Material, "Material", UpperRight, material::MaterialPanel, "reference/materials.md#parameters";
             /// The proof on this machine.
             Check, "Check", UpperRight, check::CheckPanel, "STABILITY.md";
             Log, "Log", UpperRight, log::LogPanel, "reference/window.md#messages";

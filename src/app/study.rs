@@ -13,9 +13,9 @@ use crate::app::kit::{
     widgets,
     words::time_left,
 };
-use crate::app::services::beside::started;
+use crate::app::services::beside::Beside;
 use crate::document::{Change, Document};
-use crate::render::{EngineChoice, background::Background};
+use crate::render::EngineChoice;
 use crate::study::{StudyError, StudyProgress, Watch};
 
 /// How often what is left is updated.
@@ -34,11 +34,12 @@ enum Status<R> {
 
 /// A study and its thread.
 pub struct StudyWorker<R> {
-    worker: Option<Background<Work<R>, Status<R>>>,
-    stop: Arc<AtomicBool>,
+    worker: Beside<Work<R>, Status<R>>,
+    /// Stops it; another for each start after a stop.
+    pub stop: Arc<AtomicBool>,
     /// When it was started, where its end has not been noticed.
     begun: Option<Instant>,
-    /// It was stopped: for the window it has ended, though its thread may still be at a step that can't be interrupted.
+    /// It was stopped: its thread may still be at a step that can't be interrupted, and is left behind.
     is_stopped: bool,
     /// The viewport's renderer was stopped for it.
     holds_renderer: bool,
@@ -51,7 +52,7 @@ pub struct StudyWorker<R> {
 impl<R> Default for StudyWorker<R> {
     fn default() -> Self {
         Self {
-            worker: None,
+            worker: Beside::default(),
             stop: Arc::default(),
             begun: None,
             is_stopped: false,
@@ -62,15 +63,16 @@ impl<R> Default for StudyWorker<R> {
     }
 }
 
+impl<R> Drop for StudyWorker<R> {
+    fn drop(&mut self) {
+        self.stop.store(true, Ordering::Relaxed);
+    }
+}
+
 impl<R: Clone + Send + Sync + 'static> StudyWorker<R> {
     /// Whether it runs, as far as the window is concerned.
     pub fn is_running(&self) -> bool {
-        self.is_at_work() && !self.is_stopped
-    }
-
-    /// Whether its thread is at work, stopped or not.
-    fn is_at_work(&self) -> bool {
-        self.worker.as_ref().is_some_and(Background::is_busy)
+        self.worker.is_busy()
     }
 
     /// Notices that the study has ended, and has the viewport's renderer go on where it was stopped for it. To be called
@@ -92,36 +94,36 @@ impl<R: Clone + Send + Sync + 'static> StudyWorker<R> {
     }
 
     /// A button that starts the study with what it will take, and while it runs what it does, what is left of it, and a
-    /// button that stops it. The viewport's renderer rests meanwhile: it would take part of the time that is measured.
+    /// button that stops it. The viewport's renderer `rests` meanwhile where it would take part of the time that is measured.
     /// `takes` says how long the study takes, as far as that is known; `begin` makes the work.
     pub fn controls(
         &mut self,
         ui: &mut Ui,
         desk: &mut Desk<'_>,
-        (label, help): (&str, &str),
+        (label, help, rests): (&str, &str, bool),
         takes: Option<String>,
         begin: impl FnOnce(&Desk<'_>) -> Work<R>,
     ) {
         let is_busy = self.is_running();
         // Two at once would take each other's time.
-        let is_free = !desk.shared.rendering.is_measuring && !self.is_at_work();
+        let is_free = !desk.shared.rendering.is_measuring;
         let is_requested = is_free && std::mem::take(&mut self.is_requested);
         ui.horizontal(|ui| {
             let dress = |button: egui::Response| {
-                let button = button.on_hover_text(help);
-                button.on_disabled_hover_text("Something else is being measured, or a study is at its last step.")
+                let button = widgets::explained(button, help);
+                button.on_disabled_hover_text("Something else is being measured.")
             };
             let pressed = start_or_stop(ui, label, is_busy, is_free, dress);
             if pressed == Pressed::Stop {
                 self.stop.store(true, Ordering::Relaxed);
-                self.is_stopped = true;
+                (self.stop, self.worker, self.is_stopped) = (Arc::default(), Beside::default(), true);
             } else if pressed == Pressed::Start || (is_requested && !is_busy) {
                 self.asked = vec![desk.document.clone()];
                 let work = begin(desk);
                 self.begin(ui, work);
                 self.begun = Some(Instant::now());
                 desk.shared.rendering.is_measuring = true;
-                if !desk.shared.rendering.is_paused {
+                if rests && !desk.shared.rendering.is_paused {
                     self.holds_renderer = true;
                     desk.act(Command::Pause);
                 }
@@ -130,7 +132,7 @@ impl<R: Clone + Send + Sync + 'static> StudyWorker<R> {
                 ui.weak(takes);
             }
         });
-        let standing = self.worker.as_ref().and_then(Background::latest);
+        let standing = self.worker.latest();
         widgets::comes_and_goes(ui, |ui| match standing {
             _ if self.is_stopped => widgets::note(ui, "Stopped."),
             Some(Status::Running(progress)) if is_busy => self.progress(ui, &progress),
@@ -139,9 +141,7 @@ impl<R: Clone + Send + Sync + 'static> StudyWorker<R> {
             }
             _ => {}
         });
-        widgets::comes_and_goes(ui, |ui| {
-            widgets::failure(ui, self.worker.as_ref().and_then(Background::failure))
-        });
+        widgets::comes_and_goes(ui, |ui| widgets::failure(ui, self.worker.failure()));
         let is_stale = self.found().is_some() && self.is_stale(desk);
         widgets::comes_and_goes(ui, |ui| {
             if is_stale {
@@ -156,11 +156,11 @@ impl<R: Clone + Send + Sync + 'static> StudyWorker<R> {
         let seconds = self.begun.map_or(0.0, |begun| begun.elapsed().as_secs_f64());
         let left = time_left(progress.share, seconds).map_or_else(String::new, |left| format!(" · {left}"));
         widgets::note(ui, format!("{}{left}", progress.what));
-        widgets::note(
-            ui,
-            "You can go on editing: this measures the scene as it was at the start. Until it ends the viewport shows \
-             edits with one sample.",
-        );
+        let text = "You can go on editing: this measures the scene as it was at the start. Until it ends the viewport shows \
+             edits with one sample.";
+        if self.holds_renderer {
+            widgets::note(ui, text);
+        }
         ui.ctx().request_repaint_after(REPORT_INTERVAL);
     }
 
@@ -176,11 +176,10 @@ impl<R: Clone + Send + Sync + 'static> StudyWorker<R> {
     }
 
     fn begin(&mut self, ui: &Ui, work: Work<R>) {
-        self.stop.store(false, Ordering::Relaxed);
         self.is_stopped = false;
-        let worker = started(&mut self.worker, ui.ctx(), |repaint| {
-            let stop = self.stop.clone();
-            Background::spawn("study", repaint, move |work: Work<R>, responder| {
+        let stop = self.stop.clone();
+        self.worker
+            .ask_again(ui.ctx(), "study", work, move |work: Work<R>, responder| {
                 let mut watch = |progress| {
                     responder.publish(Status::Running(progress));
                     !stop.load(Ordering::Relaxed) && !responder.is_superseded()
@@ -190,17 +189,12 @@ impl<R: Clone + Send + Sync + 'static> StudyWorker<R> {
                     Err(StudyError::Stopped) => {}
                     Err(error) => responder.publish(Status::Failed(error.to_string())),
                 }
-            })
-        });
-        // Without a thread the button does nothing; the log says why.
-        if let Some(worker) = worker {
-            worker.ask(work);
-        }
+            });
     }
 
     /// What was found last.
     pub fn found(&self) -> Option<Arc<R>> {
-        match self.worker.as_ref()?.latest()? {
+        match self.worker.latest()? {
             Status::Done(found) => Some(found),
             _ => None,
         }

@@ -18,6 +18,7 @@ use crate::document::{Denoise, Document, ViewSettings};
 use crate::job::film::Image;
 use crate::render::denoise::Denoised;
 use crate::render::display::display;
+use crate::store::examples;
 use crate::render::light_layers::LightLayer;
 use crate::render::output::{self, Format, Rendered};
 use crate::render::{EngineChoice, Progress, Session, StepDenoiser, StopReason, beyond_bounces, to_end};
@@ -102,14 +103,17 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
     render(session, &document, begun, arguments)
 }
 
-/// Renders the default scene with these files in the place of its parts, for some seconds.
+/// Renders the still life, or the default scene with these files in the place of its parts, for some seconds.
 pub fn run_default(files: &[PathBuf], engine: EngineChoice) -> anyhow::Result<()> {
     let path = std::path::absolute("glossmith.png")?;
     parse::check_writable(&path)?;
     let begun = Instant::now();
     let mut session = Session::open(engine)?;
     let scene = SceneArguments::of_files(files, engine);
-    let mut document = scene.document(&mut session)?;
+    let mut document = match files {
+        [] => examples::still_life(),
+        _ => scene.document(&mut session)?,
+    };
     document.render.time_s = Some(DEFAULT_SCENE_SECONDS);
     render(
         session,

@@ -80,10 +80,7 @@ pub struct SceneArguments {
     /// Without it a file's own materials stay.
     #[arg(long, value_name = "FILE|NAME", value_parser = parse::name_of_file(String::from_str))]
     material: Option<String>,
-    /// Put an image on a material: base-colour, roughness, metalness, normal, opacity, emission, coat, coat-roughness,
-    /// coat-color, coat-normal, film, film-thickness, fuzz, fuzz-color or fuzz-roughness. SLOT is a material's name or number, without it every one. A file or a folder of files whose names say what they are for needs no USE.
-    /// How it lies there: --set base.color_map.scale=3, .rotation, .projection=box and more. May be repeated.
-    #[arg(long = "texture", value_name = "[SLOT:]USE=FILE", value_parser = textures::argument())]
+    #[arg(long = "texture", value_name = "[SLOT:]USE=FILE", value_parser = textures::argument(), help = textures::help())]
     textures: Vec<TextureArgument>,
     /// The lobe of a file's own materials: geometric, its roughness matched to the look of the file's, or ggx.
     #[arg(long, default_value = "geometric", value_name = "geometric|ggx", value_parser = names::choice::<ImportLobe>)]

@@ -22,6 +22,16 @@ pub struct TextureArgument {
     textures: Vec<(TextureTarget, UserTexture)>,
 }
 
+/// What the option is for.
+pub fn help() -> String {
+    let names = names::<TextureTarget>();
+    format!(
+        "Put an image on a material, for one of {names}. SLOT is a material's name or number, without it every one. A file or \
+         a folder of files whose names say what they are for needs no USE. How it lies there: --set base.color_map.scale=3, \
+         .rotation, .projection=box and more. May be repeated"
+    )
+}
+
 /// `[SLOT:]USE=FILE`, or `[SLOT:]FILE` or `[SLOT:]FOLDER` where names of files say what they are for.
 pub fn argument() -> impl TypedValueParser<Value = TextureArgument> {
     OsStringValueParser::new().try_map(|argument| texture(&argument))

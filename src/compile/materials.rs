@@ -10,12 +10,12 @@ use crate::optics::layer::coat::{coat_shape, inner_reflection};
 use crate::optics::layer::fuzz::FUZZ_ROUGHNESS_MIN;
 use crate::optics::lobe::{Lobe, Width, is_mirror};
 use crate::optics::material::{
-    COAT_ABSORBS, COAT_IS_GGX, COATS_BASE, COMPENSATES, HAS_BOX, HOLDS_FILM, HOLDS_INTEGRALS, MATCHED_NODES, Material,
+    COAT_ABSORBS, COAT_IS_GGX, COATS_BASE, COMPENSATES, FILM_BANDS, HAS_BOX, HOLDS_FILM, HOLDS_INTEGRALS, MATCHED_NODES, Material,
     NO_TEXTURE, OVER_AZIMUTH, SPARES_METAL, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY, WEIGHS_INDEX, coat_blur,
 };
 use crate::optics::scattering::scattering_table;
 use crate::optics::table::{append_table, table_lookup};
-use crate::optics::thin_film::film_path;
+use crate::optics::thin_film::{UNBANDED_PHASE, film_path};
 use crate::optics::vector::Vec3;
 use crate::panics::lock;
 use crate::scene::texture::{SlotTextures, TextureTarget as On};
@@ -56,11 +56,9 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
     let uses = settings.textures;
     // Textures of one value are multiplied in here.
     let factor = |target| slot.constant(target).map_or(1.0, |[value, ..]| value);
-    let color = slot.constant(On::BaseColor).map_or(Vec3::splat(1.0), Vec3::from_f32);
     let roughness = slot
         .constant(On::Roughness)
         .map_or(settings.roughness, |[share, ..]| textured_roughness(settings, share));
-    let metalness = settings.metalness * factor(On::Metalness);
     let mut emission = Vec3::from_f32(settings.emission_color) * settings.emission_strength;
     let mut mean_emission = emission;
     if uses[On::Emission] {
@@ -71,17 +69,16 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
     }
     let is_on_box = slot.on_box.contains(&true);
     let mut material = Material {
-        base_color: Vec3::from_f32(settings.base_color) * settings.base_weight * color,
-        metalness,
+        base_color: Vec3::from_f32(settings.base_color) * settings.base_weight,
+        metalness: settings.metalness,
         specular_color: Vec3::from_f32(settings.specular_color),
         specular_weight: settings.specular_weight,
         eta: Vec3::from_f32(settings.eta),
         ior: settings.ior,
         k: Vec3::from_f32(settings.k),
         roughness,
-        emission,
         anisotropy: settings.anisotropy,
-        transmission_tint: color,
+        transmission_tint: Vec3::splat(1.0),
         transmission_weight: settings.transmission_weight,
         transmission_roughness: roughness + settings.transmission_roughness,
         rotation_rad: settings.rotation_deg.to_radians(),
@@ -92,38 +89,48 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
         edge_tint: Vec3::from_f32(settings.edge_tint),
         opacity: settings.opacity * factor(On::Opacity),
         coat_color: Vec3::from_f32(settings.coat_color),
-        coat_weight: settings.coat_weight * factor(On::Coat),
+        coat_weight: settings.coat_weight,
         coat_roughness: settings.coat_roughness,
         coat_ior: settings.coat_ior,
         light_luminance: mean_emission.luminance(),
         alpha_cutoff: if uses[On::Opacity] { slot.alpha_cutoff } else { -1.0 },
         normal_strength: settings.normal_strength,
-        texture_roughness: roughness,
         flags: flags(settings, slot) | if is_on_box { HAS_BOX } else { 0 },
         diffuse_roughness: settings.diffuse_roughness,
-        fuzz_color: Vec3::from_f32(settings.fuzz_color)
-            * slot.constant(On::FuzzColor).map_or(Vec3::splat(1.0), Vec3::from_f32),
-        fuzz_weight: settings.fuzz_weight * factor(On::Fuzz),
-        fuzz_roughness: (settings.fuzz_roughness * factor(On::FuzzRoughness)).max(FUZZ_ROUGHNESS_MIN as f32),
-        film_path: film_path(settings.film_thickness * factor(On::FilmThickness)),
-        film_weight: settings.film_weight * factor(On::Film),
+        fuzz_color: Vec3::from_f32(settings.fuzz_color),
+        fuzz_weight: settings.fuzz_weight,
+        fuzz_roughness: settings.fuzz_roughness,
+        film_weight: settings.film_weight,
         film_ior: settings.film_ior,
         reflecting_ior: settings.ior,
         bare_ior: settings.ior,
         coated_ior: settings.ior,
-        ggx_roughness: settings.ggx_roughness(roughness),
         ..Material::default()
     };
+    for &target in On::ALL {
+        if let Some(value) = slot.constant(target) {
+            material.multiply(target, Vec3::from_f32(value), value[0]);
+        }
+    }
+    // What is no product of the texture's value and the parameter.
+    material.emission = emission;
+    material.ggx_roughness = settings.ggx_roughness(roughness);
+    material.fuzz_roughness = material.fuzz_roughness.max(FUZZ_ROUGHNESS_MIN as f32);
+    material.film_path = film_path(settings.film_thickness * factor(On::FilmThickness));
     let has_film = settings.has_film() && material.film_weight * material.film_path.x > 0.0;
     material.has_film = u32::from(has_film);
+    if has_film && settings.film_bands && f64::from(material.film_path.z * material.film_ior) > UNBANDED_PHASE {
+        material.flags |= FILM_BANDS;
+    }
+    let layers = [
+        ("coat.", material.coat_weight > 0.0),
+        ("fuzz.", material.fuzz_weight > 0.0),
+        ("thin_film.", has_film),
+        ("transmission.", material.transmission_weight > 0.0),
+    ];
     for &target in On::ALL {
-        let is_there = match target {
-            On::Coat | On::CoatRoughness | On::CoatColor | On::CoatNormal => material.coat_weight > 0.0,
-            On::Film | On::FilmThickness => has_film,
-            On::Fuzz | On::FuzzColor | On::FuzzRoughness => material.fuzz_weight > 0.0,
-            _ => true,
-        };
-        if is_there {
+        let is_missing = |(layer, is_there): &(&str, bool)| target.map_key().starts_with(layer) && !is_there;
+        if !layers.iter().any(is_missing) {
             material.textures[target as usize] = slot.record(target);
         }
     }
@@ -132,7 +139,7 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
         material.transmission_roughness = material.transmission_roughness.clamp(0.0, 1.0);
     }
     let is_metal_in_part = material.metalness > 0.0 && (material.has_base() || material.transmits());
-    let changes = material.has_texture(&[On::Roughness, On::Metalness])
+    let changes = material.has_texture(&[On::Roughness, On::Metalness, On::Specular])
         || (material.has_texture(On::OF_FILM) && material.least_metallic().metalness < 1.0);
     material.has_rough_tables = u32::from(changes || is_metal_in_part);
     if material.least_metallic().transmits() {
@@ -145,8 +152,9 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
             material.transmission_tint = material.transmission_tint * color;
         }
     }
-    if settings.has_weight_in_index() {
-        material.ior = weighted_ior(settings.ior.into(), settings.specular_weight.into()) as f32;
+    // A table is for one index: a texture of the weight scales the reflection at every angle.
+    if settings.has_weight_in_index() && !material.has_texture(&[On::Specular]) {
+        material.ior = weighted_ior(settings.ior.into(), material.specular_weight.into()) as f32;
         material.flags |= WEIGHS_INDEX;
     }
     material.reflecting_ior = material.ior;
@@ -182,9 +190,6 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
 /// What a coat has of its own, and what it does to what lies below it.
 fn put_coat(settings: &MaterialSettings, slot: SlotTextures, material: &mut Material<f32>) {
     material.coat_normal_strength = settings.coat_normal_strength;
-    if let Some(color) = slot.constant(On::CoatColor) {
-        material.coat_color = material.coat_color * Vec3::from_f32(color);
-    }
     // A texture's values are meant for GGX.
     let mut roughness = settings.coat_ggx_roughness();
     if let Some([share, ..]) = slot.constant(On::CoatRoughness) {
@@ -305,7 +310,7 @@ fn compile_one(settings: &MaterialSettings, textures: SlotTextures, tables: &mut
     let varies = material.has_texture(&[On::Roughness]) || material.has_varied_blur();
     if varies && settings.lobe.traits().width == Width::Roughness {
         // A texture's values are meant for GGX.
-        material.texture_roughness = ggx_under_texture(material.texture_roughness);
+        material.ggx_roughness = ggx_under_texture(material.roughness);
         material.roughness_table = append_table(tables, &*MATCHED);
     }
     if material.coat_weight > 0.0 {

@@ -75,7 +75,7 @@ fn find(job: &Job, tracer: &PathTracer<'_>, pixel: [u32; 2], size: [u32; 2]) -> 
     };
     let point = surface_at(&job.geometry, &job.materials, &job.textures, &hit, direction);
     let plain = &job.materials[point.slot as usize];
-    let material = textured_material(&job.textures, &job.tables, plain, point.uvs[0], point.vertex_color);
+    let material = textured_material(&job.textures, &job.tables, plain, &point.uvs, point.vertex_color);
     let state = path_state(of_picture[0], of_picture[1], settings.seed, 0, settings.sequence);
     Finding {
         cosine: point.surface.normal.dot(point.surface.wo).clamp(0.0, 1.0),

@@ -70,7 +70,7 @@ fn filmed_share(q: &FresnelQuestion, model: Fresnel) -> f32 {
         ior: q.eta,
         eta: Vec3::splat(q.eta),
         k: Vec3::splat(q.k),
-        coat: 1.0,
+        before: 1.0,
         has_film: true,
         film: FilmTerms {
             weight,

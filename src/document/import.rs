@@ -49,7 +49,7 @@ impl MaterialSettings {
         }
     }
 
-    /// GGX's roughness that looks like the coat's.
+    /// GGX's roughness that looks like that of [`MaterialSettings::coat_lobe`].
     pub fn coat_ggx_roughness(&self) -> f32 {
         match self.coat_lobe {
             CoatLobe::Geometric => ggx_from_geometric(self.coat_roughness),
@@ -57,7 +57,7 @@ impl MaterialSettings {
         }
     }
 
-    /// Gives the coat GGX's roughness of a file: by this lobe, or by GGX where it is rougher than the other can be.
+    /// Sets `coat_roughness` from GGX's of a file: by this lobe, or by GGX where it is rougher than the other can be.
     pub fn set_coat_ggx_roughness(&mut self, roughness: f32, lobe: ImportLobe) {
         (self.coat_lobe, self.coat_roughness) = match lobe.at_roughest(roughness) {
             ImportLobe::Geometric => (CoatLobe::Geometric, geometric_from_ggx(roughness)),
@@ -128,7 +128,7 @@ impl MaterialSettings {
         if self.coat_weight > 0.0 {
             self.set_coat_ggx_roughness(self.coat_roughness, lobe);
         } else {
-            // That of a new coat.
+            // That of a new material.
             let new = Self::default();
             (self.coat_lobe, self.coat_roughness) = (new.coat_lobe, new.coat_roughness);
             (self.coat_on_base, self.coat_darkening) = (new.coat_on_base, new.coat_darkening);

@@ -52,7 +52,7 @@ impl MaterialSettings {
 
     /// The colour that it shows at first sight, linear RGB.
     fn seen_color(&self, is_metal: bool) -> [f32; 3] {
-        let coat = self.coat_color.map(|x| 1.0 + self.coat_weight * (x - 1.0));
+        let through = self.coat_color.map(|x| 1.0 + self.coat_weight * (x - 1.0));
         let below = if is_metal && self.fresnel == Fresnel::Conductor {
             self.measured_reflectance(1.0).map(|x| x as f32)
         } else if self.transmits() && self.transmission_weight > 0.5 {
@@ -61,7 +61,7 @@ impl MaterialSettings {
             self.base_color
         };
         let mix = |i: usize| {
-            let seen = below[i] * coat[i];
+            let seen = below[i] * through[i];
             seen + 0.5 * self.fuzz_weight * (self.fuzz_color[i] - seen)
         };
         [0, 1, 2].map(mix)

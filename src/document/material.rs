@@ -100,6 +100,8 @@ with_defaults! {
         pub film_thickness: f32 = 0.5,
         /// The thin film's index of refraction, in [1, 3].
         pub film_ior: f32 = 1.4,
+        /// Whether a thick film is shown by bands of wavelengths.
+        pub film_bands: bool = true,
         /// Share of the base that refracts, in [0, 1].
         pub transmission_weight: f32,
         /// Linear RGB in [0, 1]: tint at each refraction, or what is left of white after `transmission_depth`.

@@ -20,14 +20,12 @@ impl MaterialSettings {
         }
         let key = target.map_key().trim_end_matches("_map");
         let layer = key.split('.').next().unwrap_or_default();
-        let is_factor = !matches!(
-            target,
-            On::Emission | On::Film | On::FilmThickness | On::Coat | On::Fuzz
-        );
+        let is_factor = !key.ends_with(".weight") && !matches!(target, On::Emission | On::FilmThickness);
         for parameter in PARAMETERS.iter() {
             let is_weight = parameter.key.strip_suffix(".weight") == Some(layer);
             let is_hiding = is_weight && parameter.rgb(self) == Some([0.0; 3]);
-            if (is_factor && parameter.key == key) || (is_hiding && !matches!(layer, "base" | "specular")) {
+            let is_own = parameter.key == key;
+            if (is_factor && is_own) || (is_hiding && (is_own || !matches!(layer, "base" | "specular"))) {
                 parameter.put_rgb(self, [1.0; 3]);
             }
         }

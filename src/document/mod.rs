@@ -104,11 +104,11 @@ impl Document {
     /// The files that it names beside model and environment: its materials' textures, the view's table of colours and its
     /// reference, lights' profiles.
     pub fn pictures(&self) -> impl Iterator<Item = &Path> {
-        let textures = self.materials.iter().flat_map(|material| material.user_textures.iter());
+        let textures = self.materials.iter().flat_map(|material| material.user_textures.files());
         let reference = self.view.reference.as_ref().map(|reference| &reference.file);
         let of_view = self.view.lut.as_ref().into_iter().chain(reference);
         let of_lights = self.lighting.area_lights.iter().filter_map(|light| light.profile);
-        let named = textures.map(|(_, texture)| &texture.file).chain(of_view);
+        let named = textures.chain(of_view);
         named
             .map(PathBuf::as_path)
             .chain(of_lights.map(|profile| profile.path()))

@@ -36,13 +36,12 @@ pub fn import_report(model: &Model, lobe: ImportLobe) -> ImportReport {
     for slot in &model.slots {
         let mut note = |what: &str| report.note(Fate::Approximated, what, &slot.name);
         let material = MaterialSettings::from_slot(slot, lobe);
-        if material.lobe == Lobe::Ggx {
+        let has_ggx_below = material.lobe == Lobe::Ggx;
+        if has_ggx_below || (material.coat_weight > 0.0 && material.coat_lobe == CoatLobe::Ggx) {
             note("a roughness above 0.7, for which the lobe is GGX");
-        } else if material.transmission_weight > 0.0 && material.roughness > 0.0 {
-            note("a rough refraction, as wide as that of GGX but without its tail");
         }
-        if material.coat_weight > 0.0 && material.coat_lobe == CoatLobe::Ggx {
-            note("a coat's roughness above 0.7, for which its lobe is GGX");
+        if !has_ggx_below && material.transmission_weight > 0.0 && material.roughness > 0.0 {
+            note("a rough refraction, as wide as that of GGX but without its tail");
         }
     }
     report

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::import::picture::is_shipped;
 use crate::scene::texture::{TextureTarget, UserTexture};
 
 /// Texture maps that the user assigned to a material, at most one per target.
@@ -34,9 +35,15 @@ impl UserTextures {
         self.0.iter_mut().flatten().map(|texture| &mut **texture)
     }
 
+    /// Their files, without the maps that are part of the program.
+    pub fn files(&self) -> impl Iterator<Item = &PathBuf> {
+        let files = self.iter().map(|(_, texture)| &texture.file);
+        files.filter(|file| !is_shipped(file))
+    }
+
     /// Changes the names of their files.
     pub fn map_files(&mut self, map: impl Fn(&Path) -> PathBuf) {
-        for texture in self.iter_mut() {
+        for texture in self.iter_mut().filter(|texture| !is_shipped(&texture.file)) {
             texture.file = map(&texture.file);
         }
     }

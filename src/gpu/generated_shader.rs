@@ -18,24 +18,23 @@ use crate::optics::albedo::{ALBEDO_NODES, ROUGH_ALBEDO_LENGTH, ROUGHNESS_NODES, 
 use crate::optics::chord::{
     GAUSS_6, GAUSS_12, GAUSS_20, PEAK_RADIUS, RANGE_MAX, SHORT_RANGE, SHORT_RULE_ROUGHNESS, TINY,
 };
-use crate::optics::coat_medium::{COLOR_MIN, WAY_COSINE_MIN};
+use crate::optics::coat_medium::{COLOR_MIN, INNER_MAX, WAY_COSINE_MIN};
 use crate::optics::curve::{CUSTOM_INTERVALS, Curve};
 use crate::optics::fresnel::Fresnel;
 use crate::optics::layer::Layer;
 use crate::optics::layer::base::BASE_EDGE;
-use crate::optics::layer::coat::INNER_MAX;
 use crate::optics::layer::fuzz::FUZZ_ROUGHNESS_MIN;
 use crate::optics::layer::transmission::APART_LEAST;
 use crate::optics::lobe::{ALPHA_MIN, Horizon, Lobe, LobeTraits, MIRROR_WIDTH, Width};
 use crate::optics::material::{
-    COAT_ABSORBS, COAT_IS_GGX, COATS_BASE, COMPENSATES, FIELDS, Field, HAS_BOX, HAS_PROFILE, HOLDS_FILM,
-    HOLDS_INTEGRALS, LIGHT_GROUP_SHIFT, MATCHED_NODES, NO_TEXTURE, OVER_AZIMUTH, SPARES_METAL, VERTEX_BASE,
-    VERTEX_EMISSION, VERTEX_OPACITY, WEIGHS_INDEX,
+    COAT_ABSORBS, COAT_IS_GGX, COATS_BASE, COMPENSATES, FIELDS, FILM_BANDS, Field, HAS_BOX, HAS_PROFILE, HOLDS_FILM,
+    HOLDS_INTEGRALS, LIGHT_GROUP_SHIFT, MATCHED_NODES, NO_TEXTURE, OVER_AZIMUTH, SPARES_METAL, TEXTURES,
+    VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY, WEIGHS_INDEX,
 };
 use crate::optics::random::Sequence;
 use crate::optics::rough_diffuse::{HEAD_ON, MEAN, ROUGH_COSINE_MIN};
-use crate::optics::target::TextureTarget;
-use crate::optics::thin_film::{FILM_TINY, LARGEST_FILM_F0, LEAST_FILM_COSINE};
+use crate::optics::target::{TextureTarget, TextureValues};
+use crate::optics::thin_film::{BAND_WIDTH, FILM_TINY, LARGEST_FILM_F0, LEAST_FILM_COSINE, UNBANDED_PHASE};
 use crate::scene::camera::{GAUSSIAN_SIGMA, LENS_DIMENSION, PIXEL_DIMENSION, PixelFilter};
 use crate::scene::catcher::{CATCHER_BEND, CATCHER_HALF_SIDE, CATCHER_REFLECTANCE};
 use crate::scene::inversion::DRAW_BITS;
@@ -87,31 +86,44 @@ fn optics_choices() -> String {
     format!("// Generated from the choices in src/optics.\n{}", kinds.concat())
 }
 
-/// A material as the shaders read it.
+/// A material as the shaders read it, with its textures by their numbers.
 fn material_structure() -> String {
+    let texture = |target: TextureTarget| format!("{}_texture", target.name().replace('-', "_"));
     let field = |field: &Field| {
         let of_type = match field.of_type {
             "T" => "f32",
             "Vec3<T>" => "vec3f",
-            "[u32; TARGETS]" => {
-                let texture =
-                    |target: &TextureTarget| format!("    {}_texture: u32,\n", target.name().replace('-', "_"));
-                return TextureTarget::ALL.iter().map(texture).collect();
+            "[u32; TEXTURES]" => {
+                let spare = |index| format!("spare_{index}");
+                let name = |index| TextureTarget::ALL.get(index).map_or_else(|| spare(index), |target| texture(*target));
+                return (0..TEXTURES).map(|index| format!("    {}: u32,\n", name(index))).collect();
             }
             same => same,
         };
         format!("    {}: {of_type},\n", field.name)
     };
     let fields: String = FIELDS.iter().map(field).collect();
-    let texture = |target: TextureTarget| format!("material.{}_texture", target.name().replace('-', "_"));
-    let texture = dispatch(
+    let numbers = dispatch(
         "material_texture(material: Material, kind: u32) -> u32",
         "kind",
-        &cases(texture),
-        &format!("{NO_TEXTURE}u"),
+        &cases(|target| format!("material.{}", texture(target))),
+        &format!("return {NO_TEXTURE}u;"),
     );
-    let kinds = choices::<TextureTarget>("TEXTURE");
-    format!("// Generated from src/optics/material.rs.\nstruct Material {{\n{fields}}}\n{kinds}{texture}")
+    let products = TextureTarget::ALL.iter().map(|target| {
+        let channels = match target.values() {
+            TextureValues::Number(channel) => ["x", "y", "z", "w"][channel],
+            _ => "xyz",
+        };
+        let product = |field: &&str| format!("(*material).{field} *= value.{channels}; ");
+        (target.number(), target.fields().iter().map(product).collect())
+    });
+    let multiply = dispatch(
+        "multiply(material: ptr<function, Material>, kind: u32, value: vec4f)",
+        "kind",
+        &products.collect::<Vec<_>>(),
+        "",
+    );
+    format!("// Generated from src/optics/material.rs and target.rs.\nstruct Material {{\n{fields}}}\n{numbers}{multiply}")
 }
 
 /// Constants by their names in Rust.
@@ -124,10 +136,10 @@ macro_rules! by_name {
 /// The constants that Rust and the shaders share.
 fn constants() -> String {
     let whole = by_name! { u32:
-        ALBEDO_NODES TOTAL_NODES ROUGHNESS_NODES ROUGH_ALBEDO_LENGTH CUSTOM_INTERVALS MATCHED_NODES NO_TEXTURE HOLDS_INTEGRALS HOLDS_FILM OVER_AZIMUTH VERTEX_BASE VERTEX_EMISSION VERTEX_OPACITY SPARES_METAL COMPENSATES HAS_BOX WEIGHS_INDEX HAS_PROFILE COATS_BASE COAT_ABSORBS COAT_IS_GGX LIGHT_GROUP_SHIFT WRAP_REPEAT WRAP_MIRRORED WRAP_CLAMP IS_SRGB IS_NEAREST IS_SECOND_SET IS_FINE IS_BOX TURNS_NORMALS CHANNEL_SHIFT WRAP_SHIFT PIXEL_DIMENSION LENS_DIMENSION DRAW_BITS NO_MEDIUM PROFILE_AXES_LENGTH TILE_SIDE
+        ALBEDO_NODES TOTAL_NODES ROUGHNESS_NODES ROUGH_ALBEDO_LENGTH CUSTOM_INTERVALS MATCHED_NODES NO_TEXTURE HOLDS_INTEGRALS HOLDS_FILM OVER_AZIMUTH VERTEX_BASE VERTEX_EMISSION VERTEX_OPACITY SPARES_METAL COMPENSATES FILM_BANDS HAS_BOX WEIGHS_INDEX HAS_PROFILE COATS_BASE COAT_ABSORBS COAT_IS_GGX LIGHT_GROUP_SHIFT WRAP_REPEAT WRAP_MIRRORED WRAP_CLAMP IS_SRGB IS_NEAREST IS_SECOND_SET IS_FINE IS_BOX TURNS_NORMALS CHANNEL_SHIFT WRAP_SHIFT PIXEL_DIMENSION LENS_DIMENSION DRAW_BITS NO_MEDIUM PROFILE_AXES_LENGTH TILE_SIDE
     };
     let real = by_name! { f64:
-        ALPHA_MIN APART_LEAST MIRROR_WIDTH BASE_EDGE INNER_MAX FUZZ_ROUGHNESS_MIN HEAD_ON MEAN ROUGH_COSINE_MIN LARGEST_FILM_F0 LEAST_FILM_COSINE FILM_TINY COLOR_MIN WAY_COSINE_MIN SHORT_RULE_ROUGHNESS SHORT_RANGE PEAK_RADIUS TINY GAUSSIAN_SIGMA COSINE_MIN POSITION_ERROR MIRROR_HEIGHT_MIN VIEW_COSINE_MIN
+        ALPHA_MIN APART_LEAST MIRROR_WIDTH BASE_EDGE INNER_MAX FUZZ_ROUGHNESS_MIN HEAD_ON MEAN ROUGH_COSINE_MIN LARGEST_FILM_F0 LEAST_FILM_COSINE FILM_TINY BAND_WIDTH UNBANDED_PHASE COLOR_MIN WAY_COSINE_MIN SHORT_RULE_ROUGHNESS SHORT_RANGE PEAK_RADIUS TINY GAUSSIAN_SIGMA COSINE_MIN POSITION_ERROR MIRROR_HEIGHT_MIN VIEW_COSINE_MIN
     };
     let mut text = choices::<Layer>("LAYER");
     text.extend(whole.map(|(name, value)| format!("const {name}: u32 = {value}u;\n")));
@@ -242,19 +254,14 @@ fn plan_constants() -> String {
         .map(|layer| format!(" + (u32(PLAN_{}) << {}u)", layer.name().to_uppercase(), *layer as u32))
         .collect();
     text += &format!("// As bits.\nfn planned_layers() -> u32 {{\n    return 0u{layers};\n}}\n");
-    let textures = [
-        ("COLOR", [TextureTarget::BaseColor].as_slice()),
-        ("ROUGHNESS", &[TextureTarget::Roughness, TextureTarget::Metalness]),
-        ("EMISSION", &[TextureTarget::Emission]),
-        ("COAT", TextureTarget::OF_COAT),
-        ("FILM", TextureTarget::OF_FILM),
-        ("FUZZ", TextureTarget::OF_FUZZ),
-    ];
-    let textures = textures.map(|(effect, targets)| {
-        let bits = targets.iter().fold(0, |bits, target| bits | 1_u32 << *target as u32);
-        format!(" + u32(PLAN_{effect}_TEXTURES) * {bits}u")
-    });
-    let textures = textures.concat();
+    let multiplied = |targets: &[TextureTarget]| targets.iter().any(|target| !target.fields().is_empty());
+    let textures = TextureTarget::PLANS.iter().filter(|(_, targets)| multiplied(targets));
+    let textures: String = textures
+        .map(|(plan, targets)| {
+            let bits = targets.iter().fold(0, |bits, target| bits | 1_u32 << *target as u32);
+            format!(" + u32({plan}) * {bits}u")
+        })
+        .collect();
     text + &format!(
         "// As bits: those whose values a material is multiplied by.\nfn planned_textures() -> u32 {{\n    return 0u{textures};\n}}\n"
     )
@@ -264,16 +271,15 @@ fn plan_constants() -> String {
 fn dispatch(signature: &str, switch: &str, cases: &[(u32, String)], otherwise: &str) -> String {
     let cases: String = cases
         .iter()
-        .map(|(number, value)| format!("        case {number}u: {{ return {value}; }}\n"))
+        .map(|(number, does)| format!("        case {number}u: {{ {does} }}\n"))
         .collect();
-    format!(
-        "fn {signature} {{\n    switch {switch} {{\n{cases}        default: {{ return {otherwise}; }}\n    }}\n}}\n"
-    )
+    format!("fn {signature} {{\n    switch {switch} {{\n{cases}        default: {{ {otherwise} }}\n    }}\n}}\n")
 }
 
-/// A case for each choice.
+/// A case for each choice, which returns a value.
 fn cases<T: Named>(value: impl Fn(T) -> String) -> Vec<(u32, String)> {
-    T::ALL.iter().map(|choice| (choice.number(), value(*choice))).collect()
+    let case = |choice: &T| (choice.number(), format!("return {};", value(*choice)));
+    T::ALL.iter().map(case).collect()
 }
 
 /// WGSL that selects a lobe's functions and properties by its number: twin of the `match`es in `src/optics/lobe/mod.rs`.
@@ -291,18 +297,19 @@ fn lobe_registry() -> String {
         &format!("raw_sample({directions}, xi: vec3f) -> vec3f"),
         "shape.lobe",
         &cases(|lobe: Lobe| format!("{}_sample(shape, frame, wo, xi)", lobe.module())),
-        "frame.normal",
+        "return frame.normal;",
     );
     for name in ["density", "weight"] {
         text += &dispatch(
             &format!("raw_{name}({directions}, wi: vec3f) -> f32"),
             "shape.lobe",
             &cases(|lobe: Lobe| format!("{}_{name}(shape, frame, wo, wi)", lobe.module())),
-            "0.0",
+            "return 0.0;",
         );
     }
     let mut of_lobe = |signature: &str, value: &dyn Fn(LobeTraits) -> String, otherwise: &str| {
-        text += &dispatch(signature, "lobe", &cases(|lobe: Lobe| value(lobe.traits())), otherwise);
+        let otherwise = format!("return {otherwise};");
+        text += &dispatch(signature, "lobe", &cases(|lobe: Lobe| value(lobe.traits())), &otherwise);
     };
     of_lobe(
         "is_hemispherical(lobe: u32) -> bool",
@@ -356,7 +363,7 @@ fn curve_registry() -> String {
         text += &format!("const INTEGRAL_{name}: u32 = {number}u;\n");
     }
     let mut of_curve = |signature: &str, value: &dyn Fn(Curve) -> String, otherwise: &str| {
-        text += &dispatch(signature, "curve", &cases(value), otherwise);
+        text += &dispatch(signature, "curve", &cases(value), &format!("return {otherwise};"));
     };
     of_curve(
         "curve_distance(curve: u32, table: u32, xi: f32) -> f32",

@@ -84,6 +84,7 @@ effects! {
     CoatDarkening "coat-darkening" flag "PLAN_COAT_DARKENING";
     CoatAbsorption "coat-absorption" flag "PLAN_COAT_ABSORPTION";
     ThinFilm "thin-film" flag "PLAN_THIN_FILM";
+    FilmBands "film-bands" flag "PLAN_FILM_BANDS";
     Transmission "transmission" flag "PLAN_TRANSMISSION";
     Absorption "absorption" flag "PLAN_ABSORPTION";
     ColorTexture "color-texture" flag "PLAN_COLOR_TEXTURES";

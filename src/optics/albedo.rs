@@ -30,21 +30,23 @@ pub const ROUGHNESS_NODES: usize = 17;
 pub const ROUGH_ALBEDO_LENGTH: usize = NODE_LENGTH * ROUGHNESS_NODES * ALBEDO_NODES;
 
 inlined! {
-    /// Specular albedo at position `place` in [0, 1] of a table, linear between its nodes: the view's cosine from outside,
+    /// Specular albedo, then 0, at position `place` in [0, 1] of a table, linear between its nodes: the view's cosine from outside,
     /// [`albedo_place`] from within.
-    pub fn albedo_lookup<T: Real>(tables: &[f32], albedo_table: u32, place: T) -> Vec3<T> {
+    pub fn albedo_lookup<T: Real>(tables: &[f32], albedo_table: u32, place: T) -> [T; 4] {
         let [low, beyond] = node_below(place, ALBEDO_NODES);
         let table = &tables[albedo_table as usize..];
-        albedo_node(table, low).mix(albedo_node(&table[NODE_LENGTH..], low), beyond)
+        let [left, right] = [table, &table[NODE_LENGTH..]].map(|table| albedo_node(table, low));
+        [0, 1, 2, 3].map(|number| left[number] + (right[number] - left[number]) * beyond)
     }
 
-    /// The colour at a node of a table.
-    fn albedo_node<T: Real>(table: &[f32], node: T) -> Vec3<T> {
-        vec3(
+    /// The numbers at a node of a table.
+    fn albedo_node<T: Real>(table: &[f32], node: T) -> [T; 4] {
+        [
             look_up_number::<0, T>(table, node),
             look_up_number::<1, T>(table, node),
             look_up_number::<2, T>(table, node),
-        )
+            look_up_number::<3, T>(table, node),
+        ]
     }
 
     /// Table position of a view, in [0, 1]. At the critical angle the albedo of a smooth interface has a vertical tangent: below

@@ -37,8 +37,8 @@ pub struct FresnelTerms<T> {
     pub eta: Vec3<T>,
     /// Conductor: imaginary part a channel, not negative.
     pub k: Vec3<T>,
-    /// Index of the coat over a conductor or a film, into which light from outside is refracted first; 1 without.
-    pub coat: T,
+    /// Index of what lies over a conductor or a film, into which light from outside is refracted first; 1 of air.
+    pub before: T,
     /// True where the surface has a thin film.
     pub has_film: bool,
     pub film: FilmTerms<T>,
@@ -51,10 +51,10 @@ impl<T: Real> FresnelTerms<T> {
     }
 
     inlined! {
-        /// The cosine at which light meets a conductor or a film: within the coat, where there is one.
+        /// The cosine at which light meets a conductor or a film: within what lies over it.
         pub fn cosine_in_coat(&self, cosine: T) -> T {
-            let in_coat = (refracted_square(cosine, self.coat).safe_sqrt() / self.coat).min(T::ONE);
-            T::select(self.coat.differs(T::ONE), in_coat, cosine)
+            let there = (refracted_square(cosine, self.before).safe_sqrt() / self.before).min(T::ONE);
+            T::select(self.before.differs(T::ONE), there, cosine)
         }
 
         /// The same without a tint of the exact equations, which is the reflection's alone. Schlick's tint is the reflectance
@@ -83,6 +83,8 @@ pub struct FilmTerms<T> {
     pub behind: T,
     /// Phase of a crossing at normal incidence over the relative index, by channel.
     pub path: Vec3<T>,
+    /// Whether each channel is a band of wavelengths where the film is thick.
+    pub has_bands: bool,
 }
 
 impl<T: Real> FilmTerms<T> {
@@ -94,6 +96,7 @@ impl<T: Real> FilmTerms<T> {
             ior: T::ONE,
             behind,
             path: Vec3::ZERO,
+            has_bands: false,
         }
     }
 }

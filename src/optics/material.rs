@@ -16,6 +16,8 @@ use super::target::{TARGETS, TextureTarget};
 use super::thin_film::FilmTerms;
 use crate::optics::prelude::*;
 
+/// Textures of a [`Material`] in whole rows of 16 bytes.
+pub const TEXTURES: usize = TARGETS.next_multiple_of(4);
 /// The number of a texture that is not there.
 pub const NO_TEXTURE: u32 = u32::MAX;
 /// Bit of [`Material::has_rough_tables`]: the tables hold the integrals of [`rough_albedo`](super::albedo::rough_albedo).
@@ -49,6 +51,8 @@ pub const COAT_IS_GGX: u32 = 512;
 pub const HAS_BOX: u32 = 32;
 /// Flag: what it emits depends on the direction as the profile at `lobe_table` says.
 pub const HAS_PROFILE: u32 = 1024;
+/// Flag: where the thin film is thick, each channel is a band of wavelengths.
+pub const FILM_BANDS: u32 = 2048;
 /// The flags' bits from here on: the light group of what the material emits, see [`Material::light_group`].
 pub const LIGHT_GROUP_SHIFT: u32 = 24;
 
@@ -202,8 +206,8 @@ material! {
         coat_table: u32,
         /// The luminance by which the surface is sampled as a light: the mean over its emission texture.
         light_luminance: T,
-        /// The texture of each [`TextureTarget`], or [`NO_TEXTURE`].
-        textures: [u32; TARGETS] = [NO_TEXTURE; TARGETS],
+        /// The texture of each [`TextureTarget`], or [`NO_TEXTURE`]; the rest fills a row.
+        textures: [u32; TEXTURES] = [NO_TEXTURE; TEXTURES],
         /// Opacity cutoff of a masked material; negative for blended opacity.
         alpha_cutoff: T = -1.0,
         /// Scales the slopes of the normal texture.
@@ -212,8 +216,6 @@ material! {
         /// ([`rough_albedo_table`](super::albedo::rough_albedo_table)), [`OVER_AZIMUTH`] if the lobe is stretched and of one
         /// roughness, [`HOLDS_FILM`]. 0: tables over the view's cosine alone; 1: over the roughness too.
         has_rough_tables: u32,
-        /// Roughness that the texture multiplies; GGX's roughness if there is a `roughness_table`.
-        texture_roughness: T,
         /// Start of the table from GGX's roughness to the lobe's, or [`NO_TEXTURE`] if both are the same.
         roughness_table: u32 = NO_TEXTURE,
         /// [`VERTEX_BASE`] and the others.
@@ -239,7 +241,7 @@ material! {
         coated_ior: T = 1.0,
         /// What a coat of weight 1 adds to the fourth power of GGX's roughness below it.
         coat_blur: T,
-        /// GGX's roughness of the specular lobe without a coat.
+        /// GGX's roughness of the specular lobe without a coat, which a texture multiplies.
         ggx_roughness: T,
         /// How much of the coat's darkening of what lies below shows, in [0, 1].
         coat_darkening: T,
@@ -336,6 +338,16 @@ impl<T: Real> Material<T> {
             roughness + (blurred - roughness) * weight
         }
 
+        /// Lets what lies below a coat follow the textures of the coat, once they are multiplied.
+        pub fn follow_coat(&mut self) {
+            if self.has_coated_table() {
+                self.reflecting_ior = self.ior_under_coat(self.coat_weight);
+            }
+            if self.has_texture(&[TextureTarget::CoatRoughness]) && self.coat_blur.above_zero().any() {
+                self.coat_blur = coat_blur(self.coat_roughness);
+            }
+        }
+
         /// True if its albedo table is followed by that under a whole coat, because a texture varies the coat.
         pub fn has_coated_table(&self) -> bool {
             let has_index = self.fresnel != Fresnel::Conductor as u32;
@@ -378,10 +390,10 @@ impl<T: Real> Material<T> {
             let is_in_index = self.has_flag(WEIGHS_INDEX);
             let model = by_index(Fresnel::ALL, self.fresnel);
             let [mut eta, mut k] = [self.eta, self.k];
-            let mut coat = T::ONE;
+            let mut before = T::ONE;
             if model == Fresnel::Conductor || self.has_film == 1 {
-                coat = T::select(is_bare, coat, self.ior_of_coat());
-                [eta, k] = [eta / coat, k / coat];
+                before = T::select(is_bare, before, self.ior_of_coat());
+                [eta, k] = [eta / before, k / before];
             }
             FresnelTerms {
                 model,
@@ -394,9 +406,9 @@ impl<T: Real> Material<T> {
                 ior: self.reflecting_ior_ahead(is_inside),
                 eta,
                 k,
-                coat,
+                before,
                 has_film: self.has_film == 1,
-                film: self.film_terms(is_bare, coat),
+                film: self.film_terms(is_bare, before),
             }
         }
 
@@ -408,31 +420,36 @@ impl<T: Real> Material<T> {
             T::ONE + (self.coat_ior - T::ONE) * self.coat_weight
         }
 
-        fn film_terms(&self, within: T::Mask, coat: T) -> FilmTerms<T> {
+        fn film_terms(&self, within: T::Mask, outside: T) -> FilmTerms<T> {
             if self.has_film == 0 {
                 return FilmTerms::none_over(self.ior);
             }
-            let [before, behind] = [T::select(within, self.ior, coat), T::select(within, T::ONE, self.ior)];
+            let [before, behind] = [T::select(within, self.ior, outside), T::select(within, T::ONE, self.ior)];
             FilmTerms {
                 weight: self.film_weight,
                 ior: self.film_ior / before,
                 behind: behind / before,
                 path: self.film_path * before,
+                has_bands: self.has_flag(FILM_BANDS),
             }
         }
     }
 
-    /// The material at the lowest metalness of its textures, which decides whether there is a base or transmission.
+    /// The material where its textures leave the most of base and transmission.
     pub fn least_metallic(&self) -> Self {
-        let is_varied = self.has_texture(&[TextureTarget::Metalness]);
-        let metalness = if is_varied { T::ZERO } else { self.metalness };
-        Self { metalness, ..*self }
+        let share = |target, varied: T, plain: T| if self.has_texture(&[target]) { varied } else { plain };
+        let half = self.transmission_weight * T::HALF;
+        Self {
+            metalness: share(TextureTarget::Metalness, T::ZERO, self.metalness),
+            transmission_weight: share(TextureTarget::Transmission, half, self.transmission_weight),
+            ..*self
+        }
     }
 
     inlined! {
         /// True if textured.
         pub fn is_textured(&self) -> bool {
-            self.textures != [NO_TEXTURE; TARGETS]
+            self.textures != [NO_TEXTURE; TEXTURES]
         }
 
         /// The record of a target's texture, or [`NO_TEXTURE`].
@@ -528,6 +545,12 @@ impl<T: Real> Surface<T> {
             coat_normal: normal,
             is_inside: T::Mask::splat(false),
         }
+    }
+
+    /// The cosine between the view and the shading normal.
+    #[inline(always)]
+    pub fn view_cosine(&self) -> T {
+        self.frame.normal.dot(self.wo)
     }
 
     /// Lanes where the viewer is within a solid that light passes through.

@@ -1,10 +1,11 @@
 //! Multiple scattering between facets: single scattering loses the light that meets a second facet. A factor of the view
-//! gives it back, so that no new direction is needed. Source: Turquin, "Practical multiple scattering compensation for
-//! microfacet models" (2019).
+//! gives it back, so that no new direction is needed (Turquin, "Practical multiple scattering compensation for microfacet
+//! models", 2019). How much, and whether it is reflected or refracted, is fitted to random walks between facets (Heitz,
+//! Hanika, d'Eon and Dachsbacher, "Multiple-scattering microfacet BSDFs with the Smith model", 2016).
 //!
-//! A metal's lobe is multiplied by 1 + F₀ (1 − E)/E, E being the energy that the lobe keeps with F = 1: a white metal
-//! reflects all light. At a clear interface reflection and refraction are divided by the energy that both keep together.
-//! The base below a dielectric takes what its lobe loses, so that needs no factor.
+//! A metal's lobe is multiplied by 1 + x (1 − E)/E, E being the energy that the lobe keeps with F = 1: a white metal
+//! reflects all light. What a clear interface loses goes on; from within most of it is reflected. The base below a dielectric
+//! takes what its lobe loses, so that needs no factor.
 
 use super::albedo::{
     ALBEDO_LENGTH, ALBEDO_NODES, ROUGH_ALBEDO_LENGTH, ROUGHNESS_NODES, albedo_lookup, node_turn, rough_albedo_lookup,
@@ -24,16 +25,25 @@ use crate::optics::prelude::*;
 use crate::parallel;
 
 inlined! {
-    /// Factor that keeps a clear interface's light, linear RGB: one over the energy of reflection and refraction together. A
-    /// film shares the light otherwise in each channel.
-    pub fn interface_gain<T: Real>(material: &Material<T>, surface: &Surface<T>, shape: &LobeShape<'_, T>) -> Vec3<T> {
+    /// Factor by which a clear interface refracts, or reflects, more than single scattering does, linear RGB. A film shares
+    /// the light otherwise in each channel.
+    pub fn interface_gain<T: Real>(
+        material: &Material<T>,
+        surface: &Surface<T>,
+        shape: &LobeShape<'_, T>,
+        is_reflected: bool,
+    ) -> Vec3<T> {
         if !material.has_flag(COMPENSATES) {
             return Vec3::ONE;
         }
         let is_within = surface.is_within(material);
         let gain = |channel: usize| {
-            let [_, outside, inside] = kept_energies(material, surface, shape, channel);
-            T::ONE / T::select(is_within, inside, outside)
+            let [_, outside, inside, reflected] = kept_energies(material, surface, shape, channel);
+            let kept = match is_reflected {
+                true => [T::ONE, reflected],
+                false => [outside, inside],
+            };
+            T::ONE / T::select(is_within, kept[1], kept[0])
         };
         let first = gain(0);
         if material.has_film == 0 || !material.transmits().any() {
@@ -68,49 +78,50 @@ inlined! {
     ) -> Vec3<T> {
         let (white, one) = (Vec3::ONE, T::ONE);
         let [kept, ..] = kept_energies(material, surface, shape, 0);
-        let again = (one - kept) / kept;
+        let gain = |head_on: Vec3<T>| {
+            // Of the light that meets facets again a part leaves each time; those it meets at a slant reflect more.
+            let leaves = kept.sqrt();
+            let slant = T::from_f64(0.45) - T::from_f64(0.2) * surface.view_cosine();
+            let mean = head_on.mix(terms.metal_tint, kept * leaves * slant);
+            let again = mean.map(|mean| mean * leaves / (one - mean * (one - leaves)));
+            white + again * ((one - kept) / kept)
+        };
         if !terms.has_parts() {
-            let head_on = fresnel(terms, one);
-            return fresnel(terms, cosine) * (white + head_on * (again * terms.metalness));
+            return fresnel(terms, cosine) * white.mix(gain(fresnel(terms, one)), terms.metalness);
         }
         let [dielectric, metal] = fresnel_parts(terms, cosine);
         let mut head_on = terms.metal_f0 * terms.metal_tint;
         if terms.has_film {
             head_on = fresnel_parts(terms, one)[1];
         }
-        let metal = metal * (white + head_on * again);
         // The refracting share of a dielectric is clear; the rest lies over a base.
-        let share = material.transmission_weight.masked(material.transmits());
-        let gain = white + (interface_gain(material, surface, shape) - white) * share;
-        (dielectric * gain).mix(metal, terms.metalness)
+        let clear = white.mix(interface_gain(material, surface, shape, true), material.transmission_weight);
+        (dielectric * clear).mix(metal * gain(head_on), terms.metalness)
     }
 
-    /// Energies that single scattering keeps for a view, by a channel's table: of a white metal, and of a clear interface from
-    /// outside and within.
+    /// Shares that single scattering has of the light for a view, by a channel's table, as in [`scattering_table`].
     fn kept_energies<T: Real>(
         material: &Material<T>,
         surface: &Surface<T>,
         shape: &LobeShape<'_, T>,
         channel: usize,
-    ) -> [T; 3] {
-        let place = surface.frame.normal.dot(surface.wo).safe_sqrt();
+    ) -> [T; 4] {
+        let place = surface.view_cosine().safe_sqrt();
         if material.has_rough_tables != 0 {
             let table = (channel * ROUGH_ALBEDO_LENGTH) as u32;
-            let row = table_row(material, surface);
-            let [metal, outside, inside, _] = rough_albedo_lookup(shape.table, table, place, row);
-            return [metal, outside, inside];
+            return rough_albedo_lookup(shape.table, table, place, table_row(material, surface));
         }
-        let kept = albedo_lookup(shape.table, (channel * ALBEDO_LENGTH) as u32, place);
-        [kept.x, kept.y, kept.z]
+        albedo_lookup(shape.table, (channel * ALBEDO_LENGTH) as u32, place)
     }
 }
 
 /// The least energy of a table: no lobe keeps less, but few samples may find none, and the gain is one over it.
-const LEAST_KEPT: f32 = 0.01;
+const LEAST_KEPT: f64 = 0.01;
 
-/// Table of the energies that a material's lobe keeps, over the root of the view's cosine, and over the roughness or the
-/// azimuth if its albedo tables are: of a white metal, of a clear interface from outside and from within, 0. One for each channel follows
-/// the other where a film shares the light of an interface. `samples` per node.
+/// Table of the shares that single scattering has of a material's light, over the root of the view's cosine, and over the
+/// roughness or the azimuth if its albedo tables are: of what a white metal reflects, of what a clear interface refracts from
+/// outside and from within, and of what that reflects from within. One for each channel follows the other where a film shares
+/// the light of an interface. `samples` per node.
 pub fn scattering_table(material: &Material<f64>, samples: u32) -> Vec<f32> {
     let is_over_azimuth = material.is_over_azimuth();
     let is_rough = material.has_rough_tables != 0 && !is_over_azimuth;
@@ -135,7 +146,7 @@ pub fn scattering_table(material: &Material<f64>, samples: u32) -> Vec<f32> {
         let place = node as f64 / (ALBEDO_NODES - 1) as f64;
         // At exactly grazing the microfacet lobes are 0/0.
         let cosine = (place * place).max(1e-4);
-        in_lanes(
+        let means = in_lanes(
             level(),
             Kept {
                 alpha: microfacet_alpha(&material.shape(&[])),
@@ -144,7 +155,8 @@ pub fn scattering_table(material: &Material<f64>, samples: u32) -> Vec<f32> {
                 turn: is_over_azimuth.then(|| node_turn(step, material.anisotropy)),
                 points: &points,
             },
-        )
+        );
+        [0, 1, 2].map(|channel| kept_shares(&material, means.map(|sums| sums.to_f64()[channel])))
     };
     let energies: Vec<_> = parallel::map(steps * ALBEDO_NODES, energies);
     let channels = if material.has_film == 1 && material.transmits() {
@@ -152,14 +164,24 @@ pub fn scattering_table(material: &Material<f64>, samples: u32) -> Vec<f32> {
     } else {
         1
     };
-    let table = |channel: usize| {
-        let of_node = move |[metal, outside, inside]: &[Vec3<f64>; 3]| {
-            let numbers = [metal, outside, inside].map(|energy| (energy.to_f64()[channel] as f32).max(LEAST_KEPT));
-            [numbers[0], numbers[1], numbers[2], 0.0]
-        };
-        energies.iter().flat_map(of_node)
-    };
+    let table = |channel: usize| energies.iter().flat_map(move |of_node| of_node[channel]);
     (0..channels).flat_map(table).collect()
+}
+
+/// The numbers of [`scattering_table`] from the means of [`Kept`].
+fn kept_shares(material: &Material<f64>, [metal, passed, outer, inner_passed, inner, met]: [f64; 6]) -> [f32; 4] {
+    // A facet seen from within lets through what it refracts and a part of what is lost; the rest is reflected, as far as that
+    // spreads the weights of paths no further.
+    let through = inner_passed + 0.4 * material.roughness * (1.0 - met) * (1.0 - inner - inner_passed);
+    let most = (1.0 - through).min((2.0 * inner).sqrt());
+    let reflected = match material.ior == 1.0 {
+        true => inner,
+        false => most.max(inner / (inner + inner_passed)),
+    };
+    let tiny = f64::MIN_POSITIVE;
+    let shares = [passed / (1.0 - outer).max(tiny), inner_passed / (1.0 - reflected).max(tiny), inner / reflected.max(tiny)];
+    let [outside, inside, reflected] = shares.map(|share| share.max(LEAST_KEPT));
+    [metal.max(LEAST_KEPT), outside, inside, reflected].map(|x| x as f32)
 }
 
 /// The energy that single scattering of GGX keeps with F = 1, for a view of this cosine to the normal.
@@ -188,8 +210,8 @@ impl Points {
     }
 }
 
-/// Energies that single scattering of GGX keeps for a view of this cosine, linear RGB: of a white metal, of a clear
-/// interface from outside and from within.
+/// Energies that single scattering of GGX keeps for a view of this cosine, linear RGB: of a white metal; what a clear
+/// interface refracts and reflects from outside, and from within; what the facets met from within reflect, seen or not.
 struct Kept<'a> {
     alpha: Alpha<f64>,
     /// The material of the clear interface, where there is one.
@@ -201,7 +223,7 @@ struct Kept<'a> {
 }
 
 impl InLanes for Kept<'_> {
-    type Output = [Vec3<f64>; 3];
+    type Output = [Vec3<f64>; 6];
 
     fn run<T: Single>(self) -> Self::Output {
         vectorized!(T, self.means::<T>())
@@ -210,14 +232,14 @@ impl InLanes for Kept<'_> {
 
 impl Kept<'_> {
     #[inline(always)]
-    fn means<T: Single>(&self) -> [Vec3<f64>; 3] {
+    fn means<T: Single>(&self) -> [Vec3<f64>; 6] {
         let Points([across, up, azimuths]) = self.points;
         let count = across.len();
         let alpha = cast::<T>(self.alpha);
         let is_stretched = self.alpha.x != self.alpha.y;
         let interface = self.clear.map(Interface::<T>::of);
         let cosine = T::from_f64(self.cosine);
-        let mut sums = [Vec3::ZERO; 3];
+        let mut sums = [Vec3::ZERO; 6];
         let mut first = 0;
         while first < count {
             let xi = [T::load(&across[first..]), T::load(&up[first..]), T::ZERO];
@@ -236,21 +258,20 @@ impl Kept<'_> {
             }) = &interface
             {
                 let refracting = if *is_apart { visible_normal(*through, wo, xi) } else { h };
-                for (sum, side) in sums[1..].iter_mut().zip(sides) {
+                for (number, side) in sides.iter().enumerate() {
                     let film = side.film(wo.dot(h));
-                    let reflected = side.reflected(wo.dot(h), film) * mirrored;
+                    let met = side.reflected(wo.dot(h), film);
                     let film = if *is_apart { side.film(wo.dot(refracting)) } else { film };
-                    add(sum, reflected + side.let_through(*through, wo, refracting, film));
+                    add(&mut sums[1 + 2 * number], side.let_through(*through, wo, refracting, film));
+                    add(&mut sums[2 + 2 * number], met * mirrored);
+                    if number == 1 {
+                        add(&mut sums[5], met);
+                    }
                 }
             }
             first += T::LANES;
         }
-        let [metal, outside, inside] = sums.map(|sum| sum * (1.0 / count as f64));
-        let white = Vec3::splat(1.0);
-        match self.clear {
-            Some(_) => [metal, outside, inside],
-            None => [metal, white, white],
-        }
+        sums.map(|sum| sum * (1.0 / count as f64))
     }
 }
 
@@ -297,7 +318,7 @@ impl<T: Real> Interface<T> {
 struct Side<T> {
     terms: FresnelTerms<T>,
     eta: T,
-    /// Under a coat the reflection has another index than the refraction.
+    /// Under a cover the reflection has another index than the refraction.
     has_one_index: bool,
 }
 

@@ -2,7 +2,8 @@
 //!
 //! Each channel is light of one wavelength ([`WAVELENGTHS_NM`]), for which Airy's sum over all reflections within the film
 //! is exact: every share lies in [0, 1], so that no channel has to be clipped. The film absorbs nothing: what is not
-//! reflected goes on. Written as what enters the medium behind, by admittances (Born and Wolf, "Principles of Optics",
+//! reflected goes on. Of a film of many wavelengths each channel may be the mean over a band: Lorentz's, which damps the
+//! terms of Airy's sum as a geometric series, so that it keeps its closed form. Written as what enters the medium behind, by admittances (Born and Wolf, "Principles of Optics",
 //! section 1.6), because that does not cancel, neither at grazing angles nor at the critical one.
 //!
 //! What is not given as an index takes the film's effect from one that is: Schlick's dielectric from its index, a metal
@@ -18,6 +19,10 @@ use crate::optics::prelude::*;
 pub const WAVELENGTHS_NM: [f64; 3] = [620.0, 540.0, 450.0];
 /// The largest reflectance at normal incidence for which a complex index is sought.
 pub const LARGEST_FILM_F0: f64 = 0.999;
+/// The phase of a crossing up to which a film has no bands: three wavelengths. Beyond, they open with the phase.
+pub const UNBANDED_PHASE: f64 = 3.0 * std::f64::consts::TAU;
+/// The half-width that the bands go towards, over the wavelength: 45 nm in the green.
+pub const BAND_WIDTH: f64 = 1.0 / 12.0;
 /// The least cosine: at 0 a film over the index before it would be 0/0.
 pub const LEAST_FILM_COSINE: f64 = 1e-15;
 /// Below it a denominator counts as this.
@@ -56,13 +61,13 @@ inlined! {
     }
 
     /// The change by the film of what a dielectric lets through. `height`, where it is known: its relative index times the
-    /// cosine behind it, without a coat.
+    /// cosine behind it, in air.
     pub fn film_passed<T: Real>(terms: &FresnelTerms<T>, cosine: T, height: Option<T>) -> Vec3<T> {
         let film = &terms.film;
         let cosine = terms.cosine_in_coat(cosine).max(T::from_f64(LEAST_FILM_COSINE));
         let mut beyond = refracted_square(cosine, film.behind).safe_sqrt();
         if let Some(height) = height {
-            beyond = T::select(terms.coat.differs(T::ONE), beyond, height);
+            beyond = T::select(terms.before.differs(T::ONE), beyond, height);
         }
         let behind = Behind {
             perpendicular: [beyond, T::ZERO],
@@ -141,9 +146,15 @@ inlined! {
                 let is_small = phase.less(T::from_f64(1e-4));
                 let across = path * T::select(is_small, T::ONE, phase.sin() / phase.max(T::from_f64(FILM_TINY)));
                 let along = phase.cos();
-                let perpendicular = entered_polarised(cosine, behind.perpendicular, square, [along, across]);
+                let mut damping = T::ONE;
+                if film.has_bands {
+                    let beyond = (phase - T::from_f64(UNBANDED_PHASE)).max(T::ZERO);
+                    damping = (beyond * T::from_f64(-2.0 * BAND_WIDTH)).exp();
+                }
+                let perpendicular = entered_polarised(cosine, behind.perpendicular, square, [along, across], damping);
                 let square = square / (index_square * index_square);
-                let parallel = entered_polarised(cosine, behind.parallel, square, [along, across * index_square]);
+                let across = across * index_square;
+                let parallel = entered_polarised(cosine, behind.parallel, square, [along, across], damping);
                 T::HALF * (perpendicular + parallel)
             })
         };
@@ -159,17 +170,37 @@ inlined! {
     fn entered_bare<T: Real>(cosine: T, behind: Behind<T>) -> T {
         let (zero, one) = (T::ZERO, T::ONE);
         let [perpendicular, parallel] =
-            [behind.perpendicular, behind.parallel].map(|behind| entered_polarised(cosine, behind, zero, [one, zero]));
+            [behind.perpendicular, behind.parallel].map(|behind| entered_polarised(cosine, behind, zero, [one, zero], one));
         T::HALF * (perpendicular + parallel)
     }
 
     /// The share of one polarisation that enters. `film_square` is the film's squared admittance; then the cosine of its phase,
-    /// and its sine over the admittance.
-    fn entered_polarised<T: Real>(before: T, behind: [T; 2], film_square: T, [along, across]: [T; 2]) -> T {
+    /// and its sine over the admittance; last the damping of each further way there and back, 1 for one wavelength.
+    fn entered_polarised<T: Real>(
+        before: T,
+        behind: [T; 2],
+        film_square: T,
+        [along, across]: [T; 2],
+        damping: T,
+    ) -> T {
         let [re, im] = behind;
-        let x = (before + re) * along + before * im * across;
-        let y = im * along - (before * re + film_square) * across;
-        T::from_f64(4.0) * before * re / (x * x + y * y).max(T::from_f64(FILM_TINY))
+        let [sum, product] = [before + re, before * re + film_square];
+        let x = sum * along + before * im * across;
+        let y = im * along - product * across;
+        let square = x * x + y * y;
+        let entered = T::from_f64(4.0) * before * re;
+        let sharp = entered / square.max(T::from_f64(FILM_TINY));
+        let is_damped = damping.less(T::ONE);
+        if !is_damped.any() {
+            return sharp;
+        }
+        // The mean of the square over all phases, and of the share's denominator.
+        let far = before * im;
+        let level = T::HALF * (sum * sum + im * im + (product * product + far * far) / film_square);
+        let mean = (sum * product + far * im) / film_square.sqrt();
+        let [lost, fade] = [T::ONE - damping, T::ONE - damping * damping];
+        let denominator = T::TWO * damping * square + lost * lost * level + fade * mean;
+        T::select(is_damped, entered * (fade * level / mean + T::TWO - fade) / denominator, sharp)
     }
 
     /// The cosine at which a facet reflects as a lobe does on average, from its albedo under the factors 1 − (1 − c)⁵ and

@@ -1,6 +1,5 @@
 //! Work beside the window whose latest request wins: plots, fits, checks.
 
-use std::io;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
 use std::sync::mpsc::{Sender, channel};
 use std::sync::{Arc, Mutex};
@@ -59,7 +58,7 @@ impl<Q: Send + 'static, A: Send + 'static> Background<Q, A> {
         name: &str,
         repaint: impl Fn() + Send + 'static,
         mut work: impl FnMut(Q, &Responder<'_, A>) + Send + 'static,
-    ) -> io::Result<Self> {
+    ) -> Self {
         let (queries, asked) = channel();
         let shared = Arc::new(Shared {
             asked: AtomicUsize::new(0),
@@ -68,7 +67,7 @@ impl<Q: Send + 'static, A: Send + 'static> Background<Q, A> {
             failure: Mutex::default(),
         });
         let of_thread = shared.clone();
-        std::thread::Builder::new().name(name.to_owned()).spawn(move || {
+        let spawned = std::thread::Builder::new().name(name.to_owned()).spawn(move || {
             super::priority::lower_thread_priority();
             for (number, query) in asked {
                 let responder = Responder {
@@ -87,14 +86,17 @@ impl<Q: Send + 'static, A: Send + 'static> Background<Q, A> {
                 of_thread.done.store(number, Relaxed);
                 repaint();
             }
-        })?;
-        Ok(Self { queries, shared })
+        });
+        *lock(&shared.failure) = spawned.err().map(|error| format!("cannot start a thread: {error}"));
+        Self { queries, shared }
     }
 
     pub fn ask(&self, query: Q) {
         let number = self.shared.asked.fetch_add(1, Relaxed) + 1;
-        // The thread lasts as long as this.
-        let _ = self.queries.send((number, query));
+        if self.queries.send((number, query)).is_err() {
+            // There is no thread, which the failure says.
+            self.shared.done.store(number, Relaxed);
+        }
     }
 
     pub fn latest(&self) -> Option<A>

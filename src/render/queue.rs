@@ -4,7 +4,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 use std::thread::Thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use super::engine::EngineChoice;
 use super::output;
@@ -57,6 +57,8 @@ pub struct Entry {
     pub name: String,
     /// Whether it waits, renders, or how it ended.
     pub state: State,
+    /// When it was added, or began to render.
+    pub since: Instant,
 }
 
 impl Entry {
@@ -94,7 +96,7 @@ impl Book {
     fn next(&mut self) -> Option<(u64, Order)> {
         let mut waiting = self.entries.iter_mut().filter(|_| !self.is_paused);
         let (entry, order) = waiting.find(|(_, order)| order.is_some())?;
-        entry.state = State::Rendering(0.0);
+        (entry.state, entry.since) = (State::Rendering(0.0), Instant::now());
         self.is_cancelled = false;
         Some((entry.id, order.take()?))
     }
@@ -198,6 +200,7 @@ impl Queue {
         self.change(|book| {
             book.last_id += 1;
             let entry = Entry {
+                since: Instant::now(),
                 id: book.last_id,
                 name: free_name(&book.entries, &task.name()),
                 state: State::Waiting,

@@ -1,8 +1,8 @@
 //! Clouds of samples for plots, drawn on a thread of their own by the function that the engine renders with.
 
-use std::{io, sync::Arc};
+use std::sync::Arc;
 
-use super::background::{Background, Responder};
+use super::background::Responder;
 use super::engine::{EngineChoice, Sampler};
 use crate::analysis::fit::{Measure, Nearest, nearest_roughness};
 use crate::analysis::histogram::{angle_density, angle_histogram};
@@ -66,26 +66,21 @@ pub struct SampleReport {
 /// The answer to a query so far, or why there is none.
 pub type SampleAnswer = Result<Arc<SampleReport>, String>;
 
-/// Background worker for samples; the latest query wins.
-pub type SampleWorker = Background<SampleQuery, SampleAnswer>;
-
-/// Starts the thread; `repaint` is called when there is something new to show.
-pub fn spawn_samples(repaint: impl Fn() + Send + 'static) -> io::Result<SampleWorker> {
+/// The work that answers queries.
+pub fn answers() -> impl FnMut(SampleQuery, &Responder<'_, SampleAnswer>) + Send + 'static {
     let mut sampler: Option<(EngineChoice, Sampler)> = None;
-    Background::spawn("samples", repaint, move |query: SampleQuery, responder| {
-        match draw(&mut sampler, &query) {
-            Ok(report) => {
-                responder.publish(Ok(Arc::new(report.clone())));
-                if query.compare {
-                    compare(report, responder);
-                }
-            }
-            Err(why) => {
-                sampler = None;
-                responder.publish(Err(why));
+    move |query, responder| match draw(&mut sampler, &query) {
+        Ok(report) => {
+            responder.publish(Ok(Arc::new(report.clone())));
+            if query.compare {
+                compare(report, responder);
             }
         }
-    })
+        Err(why) => {
+            sampler = None;
+            responder.publish(Err(why));
+        }
+    }
 }
 
 fn draw(sampler: &mut Option<(EngineChoice, Sampler)>, query: &SampleQuery) -> Result<SampleReport, String> {

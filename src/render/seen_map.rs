@@ -1,8 +1,8 @@
 //! Map of the object and material slot at each pixel of the screen, made in the background: for outlines.
 
-use std::{io, sync::Arc};
+use std::sync::Arc;
 
-use super::background::Background;
+use super::background::Responder;
 use crate::job::Job;
 use crate::parallel;
 use crate::scene::{NO_OBJECT, camera::camera_ray};
@@ -16,9 +16,6 @@ const ASPECT_ROUNDING: f64 = 0.02;
 /// Rows between two checks for cancellation.
 const ROWS: usize = 32;
 
-/// Makes maps of jobs, of at most these columns and rows; the latest wins.
-pub type SeenMaps = Background<(Arc<Job>, [u32; 2]), Arc<SeenMap>>;
-
 /// Object and slot hit through each pixel's centre.
 #[derive(Clone, Debug)]
 pub struct SeenMap {
@@ -29,13 +26,11 @@ pub struct SeenMap {
     pub seen: Vec<[u32; 2]>,
 }
 
-/// Starts the thread that makes maps; `repaint` is called when one is finished.
-pub fn spawn(repaint: impl Fn() + Send + 'static) -> io::Result<SeenMaps> {
-    Background::spawn("outlines", repaint, |(job, size): (Arc<Job>, [u32; 2]), responder| {
-        if let Some(map) = seen_map(&job, size, || responder.is_superseded()) {
-            responder.publish(Arc::new(map));
-        }
-    })
+/// Answers with the map of a job, of at most these columns and rows.
+pub fn answer((job, size): (Arc<Job>, [u32; 2]), responder: &Responder<'_, Arc<SeenMap>>) {
+    if let Some(map) = seen_map(&job, size, || responder.is_superseded()) {
+        responder.publish(Arc::new(map));
+    }
 }
 
 /// The map of a job in these columns and rows, at any size of its image; `None` if superseded.

@@ -2,7 +2,6 @@
 
 use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
-use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -10,7 +9,7 @@ use std::time::Duration;
 
 use image::{ImageFormat, RgbaImage};
 
-use super::background::{Background, Responder};
+use super::background::Responder;
 use super::display::display;
 use super::looks::{ball, denoise_if_possible};
 use super::step_denoiser::StepDenoiser;
@@ -83,17 +82,16 @@ impl Subject {
     }
 }
 
-/// Starts the worker for the latest request; `cache`, created if needed, keeps thumbnails between starts. It pauses while
+/// The work that makes what was wanted last; `cache`, created if needed, keeps thumbnails between starts. It pauses while
 /// `hold` is set, for the viewport.
 #[expect(clippy::map_entry, reason = "a picture that fails is not entered")]
-pub fn spawn_thumbnails(
+pub fn makes(
     cache: Option<PathBuf>,
     hold: Arc<AtomicBool>,
-    repaint: impl Fn() + Send + 'static,
-) -> io::Result<Background<Wanted, Thumbnails>> {
+) -> impl FnMut(Wanted, &Responder<'_, Thumbnails>) + Send + 'static {
     let mut studio: Option<Studio> = None;
     let mut made: HashMap<u64, Thumbnail> = HashMap::new();
-    Background::spawn("thumbnails", repaint, move |wanted: Wanted, responder| {
+    move |wanted, responder| {
         let mut found = HashMap::new();
         for (name, subject) in &wanted.subjects {
             let (folder, key) = subject.place();
@@ -135,7 +133,7 @@ pub fn spawn_thumbnails(
             found.insert(name.clone(), made.get(&key).cloned().flatten());
             responder.publish(Arc::new(found.clone()));
         }
-    })
+    }
 }
 
 fn read(path: &Path) -> Option<RgbaImage> {

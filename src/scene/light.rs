@@ -17,7 +17,7 @@ use super::intersect::triangle_normal;
 use super::light_profile::profile_share;
 use super::part::exact;
 use super::surface::{POSITION_ERROR, position_error};
-use super::texture::{Textures, emission_at, put_coat, uvs_at, vertex_factors};
+use super::texture::{TextureTarget, Textures, emission_at, multiply_by, uvs_at, vertex_factors};
 use crate::optics::coat_medium::coat_over_emission;
 use crate::optics::material::{COAT_ABSORBS, HAS_BOX, HAS_PROFILE, Material};
 use crate::optics::numeric::normalize_or;
@@ -226,7 +226,7 @@ pub fn light_sample<T: Scalar>(
         let uvs = uvs_at(geometry, triangle, weights, material.has_flag(HAS_BOX));
         let of_vertices = vertex_factors(geometry, material, triangle, weights);
         radiance = emission_at(emitters.textures, material, uvs, of_vertices);
-        put_coat(&mut coated, emitters.textures, uvs);
+        multiply_by(emitters.textures, TextureTarget::OF_COAT, &T::each(|_| uvs), &mut coated);
     }
     if is_spot(material) {
         radiance = radiance * spot_share(material, -normal.dot(direction));

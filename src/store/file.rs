@@ -8,6 +8,7 @@ use serde_json::{Map, Value as Json};
 
 use super::error::{FileError, SIZE_MAX};
 use crate::import::limits;
+use crate::import::picture::shipped;
 use crate::scene::path_text::{path_of_text, path_text};
 
 /// What was read from a file, and what was odd about it.
@@ -20,6 +21,9 @@ pub struct Loaded<T> {
 
 /// A whole file, unless it is far too large.
 pub(super) fn read(path: &Path) -> Result<Vec<u8>, FileError> {
+    if let Some(bytes) = shipped(path) {
+        return Ok(bytes.to_vec());
+    }
     let mut bytes = Vec::new();
     let result = limits::open(path).and_then(|file| file.take(SIZE_MAX + 1).read_to_end(&mut bytes));
     match result {

@@ -53,6 +53,9 @@ pub const SHIPPED: &[(&str, &[&str])] = shipped! {
     "Films and anodised metals":
         "soap-film" "oil-on-water" "tempered-steel" "anodised-titanium-blue" "anodised-titanium-gold"
         "anodised-titanium-magenta";
+    "With texture maps":
+        "hairline-steel" "hammered-copper" "metallic-blue" "orange-peel-paint" "linen" "leather-brown" "carbon-weave"
+        "fingerprints";
 };
 
 /// The shipped materials, in the order of the menus.
@@ -139,11 +142,7 @@ pub(super) fn open_material(path: &Path, bytes: &[u8]) -> Result<Loaded<Material
 
 /// The files that a material names.
 fn named(material: &MaterialSettings) -> Vec<PathBuf> {
-    material
-        .user_textures
-        .iter()
-        .map(|(_, texture)| texture.file.clone())
-        .collect()
+    material.user_textures.files().cloned().collect()
 }
 
 /// The material in a file.

@@ -95,7 +95,7 @@ fn what_a_facet_leaves_over_is_what_it_does_not_reflect() {
             ior: 1.5,
             eta: vec3(0.2, 0.9, 1.1),
             k: vec3(3.9, 2.4, 2.1),
-            coat: 1.0,
+            before: 1.0,
         };
         for cosine in [0.02_f64, 0.3, 0.8, 1.0] {
             let behind = (1.0 - (1.0 - cosine * cosine) / 2.25).sqrt();

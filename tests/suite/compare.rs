@@ -7,7 +7,7 @@ use egui::accesskit::Role;
 use egui::{Key, Modifiers, Vec2};
 use egui_kittest::kittest::Queryable as _;
 use glossmith::app::Options;
-use glossmith::app::actions::Action;
+use glossmith::app::actions::{Action, Command};
 use glossmith::app::compare::Rival;
 use glossmith::app::layout::Pane;
 use glossmith::document::Document;
@@ -46,6 +46,23 @@ fn a_and_b_have_the_same_random_numbers() {
     wait(&mut harness, "a difference", |app| {
         app.rms_difference().is_some_and(|rms| rms > 0.01)
     });
+}
+
+/// B is chosen among the presets, which leaves A as it is.
+#[test]
+fn b_is_chosen_in_the_grid_of_presets() {
+    let mut harness = editor();
+    let before = harness.document().clone();
+    harness.command(Command::Compare);
+    harness.run_steps(3);
+    harness.click(Role::ComboBox, "Compare with");
+    press(&mut harness, "Choose a preset…");
+    press(&mut harness, "Rubber");
+    wait(&mut harness, "B", |app| {
+        let b = app.rival_snapshot().and_then(|rival| rival.picture.clone());
+        b.is_some_and(|b| b.document.materials[0].name == "Rubber")
+    });
+    assert_eq!(*harness.document(), before);
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use glossmith::document::{Document, ViewSettings};
+use glossmith::document::{Background, Document, ViewSettings};
 use glossmith::optics::primaries::{REC709, transformed};
 use glossmith::optics::tone::{ToneCurve, linear_from_srgb};
 use glossmith::optics::vector::Vec3;
@@ -33,24 +33,29 @@ fn look_of([r, g, b]: [f64; 3]) -> Look {
     [116.0 * y - 16.0, a.hypot(b), b.atan2(a).to_degrees()]
 }
 
-/// The mean of the displayed picture of a ball, as light from a screen, over the ball.
-fn ball(name: &str, environment: EnvironmentSource, tone_map: ToneCurve) -> Look {
+/// The codes of the displayed picture of a ball.
+fn codes(name: &str, environment: EnvironmentSource, tone_map: ToneCurve, background: Background) -> Vec<u8> {
     let mut document = Document {
         model: ModelSource::Sphere,
         materials: vec![material_by_name(name).expect("shipped").clone()],
-        ground: true,
+        ground: background == Background::Environment,
         view: ViewSettings {
             tone_map,
             ..ViewSettings::default()
         },
         ..Document::default()
     };
-    document.lighting.environment = environment;
+    (document.lighting.environment, document.lighting.background) = (environment, background);
     (document.render.width, document.render.height, document.render.samples) = (SIDE, SIDE, 64);
     let mut session = Session::open(EngineChoice::Cpu).expect("always");
     session.submit(&document).expect("a sphere");
     while !session.step(Duration::from_secs(1)).expect("it renders").is_done {}
-    let codes = display(&session.image().expect("it is done"), &document.view);
+    display(&session.image().expect("it is done"), &document.view)
+}
+
+/// The mean of the displayed picture of a ball, as light from a screen, over the ball.
+fn ball(name: &str, environment: EnvironmentSource, tone_map: ToneCurve) -> Look {
+    let codes = codes(name, environment, tone_map, Background::Environment);
     let middle = SIDE as usize / 3..2 * SIDE as usize / 3;
     let pixels = middle
         .clone()
@@ -60,6 +65,23 @@ fn ball(name: &str, environment: EnvironmentSource, tone_map: ToneCurve) -> Look
         .collect();
     let sum = colors.iter().fold(Vec3::splat(0.0), |sum, color| sum + *color);
     look_of((sum / colors.len() as f64).to_f64())
+}
+
+/// Hue in degrees and saturation of the mean code, as painting programs count them: metals are warm in the light of the start.
+#[test]
+fn gold_and_copper_have_their_hue_and_saturation() {
+    for (name, hues, least) in [("gold", 40.0..=50.0, 0.45), ("copper", 12.0..=25.0, 0.35)] {
+        let light = EnvironmentSource::default();
+        let codes = codes(name, light, ToneCurve::default(), Background::Transparent);
+        let opaque = codes.as_chunks::<4>().0.iter().filter(|code| code[3] > 250);
+        let sum = |channel: usize| opaque.clone().map(|code| f64::from(code[channel])).sum::<f64>();
+        let [red, green, blue] = [0, 1, 2].map(sum);
+        let (hue, saturation) = (60.0 * (green - blue) / (red - blue), 1.0 - blue / red);
+        assert!(
+            hues.contains(&hue) && saturation >= least,
+            "{name}: {hue:.1}°, {saturation:.3}"
+        );
+    }
 }
 
 /// The range of hues, in degrees, and the least chroma; without a hue what is to be grey, with the most chroma.

@@ -157,7 +157,7 @@ fn reflectance_apart(a: &MaterialSettings, b: &MaterialSettings) -> f64 {
         },
         eta: Vec3::from_f32(m.eta),
         k: Vec3::from_f32(m.k),
-        coat: 1.0,
+        before: 1.0,
         has_film: false,
         film: FilmTerms::none_over(1.5),
     };

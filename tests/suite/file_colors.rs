@@ -1,8 +1,8 @@
-//! Colours of OpenEXR files by the primaries that they name, as colours and as luminance and chroma.
+//! Colours of OpenEXR files by the primaries that they name.
 
 use std::path::Path;
 
-use glossmith::import::environment::load;
+use glossmith::import::environment::{EnvironmentError, load};
 use glossmith::scene::environment::{Environment, EnvironmentSource};
 use tempfile::TempDir;
 
@@ -10,8 +10,8 @@ const SIZE: [usize; 2] = [4, 2];
 /// Red, green, blue and white of CIE XYZ.
 const XYZ: [f32; 8] = [1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0 / 3.0, 1.0 / 3.0];
 
-/// A channel's name, how many pixels one of its samples stands for along each side, and its value everywhere.
-type Channel = (&'static str, i32, f32);
+/// A channel's name, and its value everywhere.
+type Channel = (&'static str, f32);
 
 /// An OpenEXR file of one colour: scan lines of floats, not compressed. The channels are in the order of their names.
 fn write(path: &Path, channels: &[Channel], chromaticities: Option<[f32; 8]>) {
@@ -29,11 +29,11 @@ fn write(path: &Path, channels: &[Channel], chromaticities: Option<[f32; 8]>) {
             .collect::<Vec<u8>>()
     };
     let mut list = Vec::new();
-    for (name, step, _) in channels {
+    for (name, _) in channels {
         list.extend(name.bytes());
         // Its end; floats.
         list.push(0);
-        list.extend(ints(&[2, 0, *step, *step]));
+        list.extend(ints(&[2, 0, 1, 1]));
     }
     list.push(0);
     let window = ints(&[0, 0, width as i32 - 1, height as i32 - 1]);
@@ -55,31 +55,31 @@ fn write(path: &Path, channels: &[Channel], chromaticities: Option<[f32; 8]>) {
         bytes.extend(value);
     }
     bytes.push(0);
-    let line = |row: usize| -> Vec<u8> {
-        let held = channels
-            .iter()
-            .filter(|(_, step, _)| row.is_multiple_of(*step as usize));
-        held.flat_map(|(_, step, value)| floats(&vec![*value; width / *step as usize]))
-            .collect()
-    };
+    let line: Vec<u8> = channels
+        .iter()
+        .flat_map(|(_, value)| floats(&vec![*value; width]))
+        .collect();
     let mut start = bytes.len() + 8 * height;
-    for row in 0..height {
+    for _ in 0..height {
         bytes.extend((start as u64).to_le_bytes());
-        start += 8 + line(row).len();
+        start += 8 + line.len();
     }
     for row in 0..height {
-        let line = line(row);
         bytes.extend(ints(&[row as i32, line.len() as i32]));
-        bytes.extend(line);
+        bytes.extend(&line);
     }
     std::fs::write(path, bytes).expect("a writable folder");
 }
 
 fn read(channels: &[Channel], chromaticities: Option<[f32; 8]>) -> Environment {
+    opened(channels, chromaticities).expect("loads")
+}
+
+fn opened(channels: &[Channel], chromaticities: Option<[f32; 8]>) -> Result<Environment, EnvironmentError> {
     let folder = TempDir::new().expect("a folder");
     let path = folder.path().join("colour.exr");
     write(&path, channels, chromaticities);
-    load(&EnvironmentSource::File(path)).expect("loads")
+    load(&EnvironmentSource::File(path))
 }
 
 #[track_caller]
@@ -96,7 +96,7 @@ const OF_XYZ: [f32; 3] = [0.2285, 0.5752, 0.5545];
 
 #[test]
 fn xyz_is_brought_to_rec_709() {
-    let colors = read(&[("B", 1, 0.6), ("G", 1, 0.5), ("R", 1, 0.4)], Some(XYZ));
+    let colors = read(&[("B", 0.6), ("G", 0.5), ("R", 0.4)], Some(XYZ));
     assert_is(&colors, OF_XYZ);
     assert!(
         !colors.warnings.iter().any(|told| told.contains("space")),
@@ -105,28 +105,19 @@ fn xyz_is_brought_to_rec_709() {
     );
 }
 
-/// RY = (R − Y) / Y, BY = (B − Y) / Y; the luminance is that of the file's own primaries.
-#[test]
-fn luminance_and_chroma_are_of_the_files_primaries() {
-    for step in [1, 2] {
-        let channels = [("BY", step, 0.2), ("RY", step, -0.2), ("Y", 1, 0.5)];
-        assert_is(&read(&channels, Some(XYZ)), OF_XYZ);
-        let green = (0.5 - 0.2126 * 0.4 - 0.0722 * 0.6) / 0.7152;
-        assert_is(&read(&channels, None), [0.4, green, 0.6]);
-    }
-}
-
 /// Primaries in a line span no space: the numbers stay as they are, which is told.
 #[test]
 fn what_has_no_conversion_is_told() {
     let line = [0.3, 0.3, 0.4, 0.4, 0.5, 0.5, 0.3127, 0.329];
-    for channels in [
-        &[("B", 1, 0.6), ("G", 1, 0.5), ("R", 1, 0.4)][..],
-        &[("BY", 2, 0.0), ("RY", 2, 0.0), ("Y", 1, 0.5)],
-    ] {
-        let environment = read(channels, Some(line));
-        let is_told = |told: &String| told.contains("no space of colours");
-        assert!(environment.warnings.iter().any(is_told), "{:?}", environment.warnings);
-        assert!((environment.texels[0][1] - 0.5).abs() < 1e-3);
-    }
+    let environment = read(&[("B", 0.6), ("G", 0.5), ("R", 0.4)], Some(line));
+    let is_told = |told: &String| told.contains("no space of colours");
+    assert!(environment.warnings.iter().any(is_told), "{:?}", environment.warnings);
+    assert!((environment.texels[0][1] - 0.5).abs() < 1e-3);
+}
+
+/// The luminance of what has chroma beside it is not the image.
+#[test]
+fn luminance_with_chroma_is_refused() {
+    let refused = opened(&[("BY", 0.2), ("RY", -0.2), ("Y", 0.5)], None).expect_err("refused");
+    assert!(refused.to_string().contains("channels BY, RY, Y"), "{refused}");
 }

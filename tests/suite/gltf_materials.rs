@@ -244,7 +244,7 @@ fn textures_of_sheens_and_fuzz_are_looked_up() {
         let (compiled, tables) = compile_textured(&[material], &Textures::new(model).slots);
         let textures = Textures::new(model);
         // In the middle of the left texel.
-        let at = textured_material(&textures, &tables, &compiled[0], [[0.25, 0.5]; 3], Vec3::splat(1.0));
+        let at = textured_material(&textures, &tables, &compiled[0], &[[[0.25, 0.5]; 3]], Vec3::splat(1.0));
         let [r, g, b] = at.fuzz_color.to_f64();
         [f64::from(at.fuzz_weight), r, g, b, f64::from(at.fuzz_roughness)]
     };

@@ -12,6 +12,7 @@ use glossmith::scene::texture::{
     Pack, TextureAssignment, TextureChannel, TextureProjection, TextureSpace, TextureTarget, Textures, UserTexture,
     mapped_normal, texture_lookup, uvs_at,
 };
+use glossmith::import::{Budget, picture::read_texture};
 use glossmith::scene::{Geometry, Model, ModelSource, Texture};
 use glossmith::store::{PRESETS, load_document, load_material, save_document, save_material};
 use image::{Rgba, RgbaImage};
@@ -357,4 +358,24 @@ fn files_keep_pictures_by_relative_paths() {
     std::fs::write(&path, broken).unwrap();
     let error = load_document(&path).unwrap_err().to_string();
     assert!(error.contains("scale") && error.contains("-2"), "{error}");
+}
+
+#[test]
+fn maps_of_shipped_materials_are_in_the_program_and_stay_named() {
+    let with_maps = PRESETS.iter().filter(|material| material.user_textures.iter().next().is_some());
+    let folder = Folder::new();
+    let mut count = 0;
+    for material in with_maps {
+        count += 1;
+        for (target, texture) in material.user_textures.iter() {
+            read_texture(&texture.file, target.is_color(), u32::MAX, &Budget::of_import()).unwrap();
+        }
+        let document = of_material(ModelSource::Sphere, material.clone());
+        assert_eq!(document.pictures().count(), 0, "no file to watch");
+        let path = folder.path("project.json");
+        save_document(&path, &document).unwrap();
+        let loaded = load_document(&path).unwrap();
+        assert_eq!((loaded.value.materials, loaded.warnings), (document.materials, Vec::new()));
+    }
+    assert_eq!(count, 8);
 }

@@ -13,7 +13,7 @@ use glossmith::job::film::Film;
 use glossmith::job::plan::Plan;
 use glossmith::job::{Job, Settings};
 use glossmith::optics::material::{
-    COAT_ABSORBS, COAT_IS_GGX, COMPENSATES, HAS_BOX, HAS_PROFILE, Material, NO_TEXTURE, OVER_AZIMUTH, SPARES_METAL,
+    COAT_ABSORBS, COAT_IS_GGX, COMPENSATES, FILM_BANDS, HAS_BOX, HAS_PROFILE, Material, NO_TEXTURE, OVER_AZIMUTH, SPARES_METAL,
     VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY,
 };
 use glossmith::optics::vector::Vec3;
@@ -76,6 +76,7 @@ fn take_out(effect: &str, value: u32, settings: &mut Settings, materials: &mut [
         "multiple-scattering" => |material, _| material.flags &= !COMPENSATES,
         "fuzz" => |material, _| material.fuzz_weight = 0.0,
         "thin-film" => |material, _| material.has_film = 0,
+        "film-bands" => |material, _| material.flags &= !FILM_BANDS,
         "coat" => |material, _| (material.coat_weight, material.reflecting_ior) = (0.0, material.ior),
         "coat-ggx" => |material, _| material.flags &= !COAT_IS_GGX,
         "coat-darkening" => |material, _| material.coat_darkening = 0.0,
@@ -84,7 +85,7 @@ fn take_out(effect: &str, value: u32, settings: &mut Settings, materials: &mut [
             plain(material, &[On::BaseColor]);
             material.flags &= !VERTEX_BASE;
         },
-        "roughness-texture" => |material, _| plain(material, &[On::Roughness, On::Metalness]),
+        "roughness-texture" => |material, _| plain(material, On::OF_ROUGHNESS),
         "normal-map" => |material, _| plain(material, &[On::Normal]),
         "emission-texture" => |material, _| plain(material, &[On::Emission]),
         "vertex-colors" => |material, _| material.flags &= !(VERTEX_EMISSION | VERTEX_OPACITY),
@@ -263,6 +264,7 @@ fn weak_documents([folder, of_coat]: [&Folder; 2]) -> Vec<Document> {
         "base.diffuse_roughness=0.5",
         "fuzz.weight=0.2",
         "thin_film.weight=0.3",
+        "thin_film.thickness=2",
         "specular.lobe=ggx",
         "specular.roughness=0.5",
     ] {

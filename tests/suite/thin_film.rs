@@ -34,7 +34,7 @@ fn terms<T: Scalar>(model: Fresnel, ior: f64, [eta, k]: [f64; 2], film: FilmTerm
         ior: T::from_f64(ior),
         eta: splat(eta),
         k: splat(k),
-        coat: T::ONE,
+        before: T::ONE,
         has_film: true,
         film: FilmTerms {
             behind: T::from_f64(ior),

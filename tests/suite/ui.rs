@@ -355,6 +355,7 @@ fn every_panel_and_sheet_has_named_inputs() {
         harness.key_press(Key::Escape);
         harness.run_steps(2);
     }
+    assert!(!harness.has("Contents"), "escape closes the manual");
     for theme in 0..2 {
         harness.command(Command::ToggleTheme);
         harness.check_accessibility();

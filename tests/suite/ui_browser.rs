@@ -1,9 +1,8 @@
-//! The browser of materials and environments: groups, sizes, favourites, tags, watched folders.
+//! The browser of materials and environments: groups, sizes, favourites, watched folders.
 
 use std::path::Path;
 
 use eframe::App as _;
-use egui::Key;
 use egui::accesskit::Role;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use glossmith::app::Options;
@@ -35,39 +34,19 @@ fn place(harness: &Editor, label: &str) -> egui::Rect {
 }
 
 #[test]
-fn favourites_come_first_tags_are_found_and_both_are_kept() {
+fn favourites_come_first_and_are_kept() {
     let mut harness = editor_of(options());
     harness.run_steps(3);
     click(&mut harness, "More of Amber");
     click(&mut harness, "Add to favourites");
     assert!(place(&harness, "Amber").top() < place(&harness, "Rubber").top());
-    click(&mut harness, "More of Gold");
-    click(&mut harness, "Tags…");
-    harness.write("Tags of Gold", "Jewel, warm");
-    harness.key_press(Key::Enter);
-    harness.run_steps(3);
-    search(&mut harness, "jewel");
-    assert!(has(&harness, "Gold") && !has(&harness, "Silver"));
     search(&mut harness, "metals");
     assert!(has(&harness, "Gold") && has(&harness, "Silver") && !has(&harness, "Porcelain"));
-    search(&mut harness, "");
-    click(&mut harness, "Only what has a tag");
-    click(&mut harness, "warm");
-    assert!(has(&harness, "Gold") && !has(&harness, "Silver"));
-
     let mut memory = Memory::default();
     harness.state_mut().save(&mut memory);
     drop(harness);
-    let mut harness = editor_remembering(memory, options());
+    let harness = editor_remembering(memory, options());
     assert!(place(&harness, "Amber").top() < place(&harness, "Rubber").top());
-    search(&mut harness, "jewel");
-    assert!(has(&harness, "Gold") && !has(&harness, "Silver"));
-    click(&mut harness, "More of Gold");
-    click(&mut harness, "Tags…");
-    harness.write("Tags of Gold", "");
-    harness.key_press(Key::Enter);
-    harness.run_steps(3);
-    assert!(!has(&harness, "Gold"), "nothing is found by a tag that was taken away");
 }
 
 #[test]

@@ -34,6 +34,7 @@ fn what_an_export_loses_is_shown_before_it_is_written() {
     let material = harness.state().document().materials[0].clone();
     let path = folder.path().join("out.mtlx");
     ask_for(&mut harness, &path);
+    assert!(harness.has("Export format"), "the sheet is there before the balls");
     see_label(&mut harness, "Write the file");
     harness.check_accessibility();
     assert!(!path.exists(), "it was written before anybody agreed");

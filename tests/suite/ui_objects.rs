@@ -162,9 +162,9 @@ fn materials_chosen_together_are_edited_together() {
     let folder = Folder::new();
     let mut harness = opened(two_squares(&folder));
     let before = harness.document().clone();
-    harness.click(Role::Button, "Material red");
+    harness.click(Role::Button, "Slot 1: red");
     let green = harness
-        .get_by_role_and_label(Role::Button, "Material green")
+        .get_by_role_and_label(Role::Button, "Slot 2: green")
         .rect()
         .center();
     click_with(&mut harness, green, Modifiers::COMMAND);
@@ -184,6 +184,6 @@ fn materials_chosen_together_are_edited_together() {
     request(&mut harness, Action::UseMaterial(Box::new(PRESETS[3].clone())));
     assert_eq!(harness.document().materials, [PRESETS[3].clone(), PRESETS[3].clone()]);
     undo(&mut harness);
-    harness.click(Role::Button, "Material green");
+    harness.click(Role::Button, "Slot 2: green");
     assert!(!harness.has("2 materials are edited together."));
 }

@@ -1,4 +1,4 @@
-//! Textures, the lobe of opened models, the render region, the list of environments and the palette's parameters, in the
+//! Textures, the lobe of opened models, the list of environments and the palette's parameters, in the
 //! editor with the real renderer.
 
 use egui::accesskit::Role;
@@ -7,8 +7,8 @@ use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use glossmith::app::Options;
 use glossmith::app::actions::{Action, Command};
 use glossmith::app::layout::Pane;
-use glossmith::document::{AreaLight, Document, range};
-use glossmith::optics::curve::Curve;
+use glossmith::document::{AreaLight, Document, GroundKind, range};
+use glossmith::optics::curve::{Curve, curve_density};
 use glossmith::optics::lobe::Lobe;
 use glossmith::scene::ModelSource;
 use glossmith::scene::environment::EnvironmentSource;
@@ -112,17 +112,8 @@ fn opened_models_get_the_lobe_that_the_menu_says() {
             app.document().model == ModelSource::File(path.clone())
         });
         assert_eq!(harness.document().materials[0].lobe, lobe);
+        assert!(harness.document().ground, "it stands on something");
     }
-}
-
-#[test]
-fn a_region_is_set_by_numbers() {
-    let mut harness = editor();
-    harness.reveal(Pane::Camera);
-    harness.tap(Role::CheckBox, "Render region");
-    harness.set("Region left", 40.0);
-    settle(&mut harness);
-    assert_eq!(harness.document().render.region, Some([0.4, 0.25, 0.75, 0.75]));
 }
 
 #[test]
@@ -143,6 +134,8 @@ fn environments_are_listed_with_pictures_and_files_stay_in_the_list() {
         app.document().lighting.environment == source
     });
     settle(&mut harness);
+    // Before a photograph the ground is its shadow alone.
+    assert_eq!(harness.document().lighting.ground.kind, GroundKind::ShadowCatcher);
     harness.get_by_role_and_label(Role::Button, "Sky").click_accesskit();
     wait(&mut harness, "the sky", |app| {
         app.document().lighting.environment == EnvironmentSource::Sky
@@ -241,7 +234,19 @@ fn a_named_curve_becomes_a_custom_one_in_its_panel() {
         let before = harness.document().clone();
         make_custom(&mut harness, is_by_button);
         settle(&mut harness);
-        assert_eq!(harness.document().materials[0].curve, Curve::Custom);
+        let material = &harness.document().materials[0];
+        assert_eq!(material.curve, Curve::Custom);
+        if is_by_button {
+            let (named, table) = (before.materials[0].curve, material.custom_curve.table());
+            for distance in [0.15, 0.3, 0.5, 0.7, 0.9_f64] {
+                let [own, of_named] = [(Curve::Custom, &table[..]), (named, &[])]
+                    .map(|(curve, table)| curve_density(curve, table, distance));
+                assert!(
+                    (own / of_named - 1.0).abs() < 0.05,
+                    "{own} and {of_named} at {distance}"
+                );
+            }
+        }
         assert!(!harness.has("Edit as custom"));
         undo(&mut harness);
         assert_eq!(*harness.document(), before);

@@ -9,7 +9,7 @@ use glossmith::document::effect::Switch;
 use glossmith::job::effect::EffectId;
 use glossmith::scene::ModelSource;
 
-use super::ui::{Editor, editor, editor_of, options, picture, settle, undo};
+use super::ui::{Editor, editor, editor_of, options, picture, see_label, settle, undo};
 use super::ui_hands::Hands as _;
 use super::worker::small_document;
 
@@ -57,7 +57,10 @@ fn a_click_says_what_is_sharp() {
     let mut harness = editor();
     let sharp = picture(&harness);
     harness.reveal(Pane::Camera);
-    harness.set("Aperture", 0.3);
+    harness.set("f-number", 1e6);
+    assert!(harness.query_by_label_contains("Nothing blurs").is_some());
+    harness.set("f-number", 0.05);
+    assert!(harness.query_by_label_contains("Nothing blurs").is_none());
     settle(&mut harness);
     let at_target = picture(&harness);
     assert_ne!(at_target, sharp);
@@ -178,6 +181,7 @@ fn a_click_in_the_viewport_gives_its_angle_to_the_plots() {
     });
     settle(&mut harness);
     harness.reveal(Pane::Samples);
+    harness.tap_label("Pick angle");
     let center = harness.get_by_label("Viewport").rect().center();
     click_at(&mut harness, center);
     assert!(
@@ -203,12 +207,62 @@ fn ctrl_shift_and_a_click_explain_the_pixel() {
     assert!(!harness.has("Path trace of this pixel"));
 }
 
+/// What a preset would be dropped on is named; it is given the preset.
+#[test]
+fn the_part_below_a_dragged_preset_is_named() {
+    let mut harness = editor();
+    let [from, to] = [
+        harness.get_by_role_and_label(Role::Button, "Rubber"),
+        harness.get_by_label("Viewport"),
+    ]
+    .map(|node| node.rect().center());
+    harness.hover_at(from);
+    harness.step();
+    harness.drag_at(from);
+    for share in [0.2, 0.6, 1.0] {
+        harness.hover_at(from.lerp(to, share));
+        harness.run_steps(2);
+    }
+    assert!(harness.query_by_label_contains("Drop on ").is_some());
+    harness.drop_at(to);
+    harness.run_steps(3);
+    assert_eq!(harness.document().materials[0].name, "Rubber");
+    assert!(harness.query_by_label_contains("Drop on ").is_none());
+}
+
+/// Charts end within their panels, and the menu *View* within the window.
+#[test]
+fn charts_and_menus_fit_the_window() {
+    let mut harness = editor();
+    for height in [1080.0, 768.0] {
+        harness.set_size(Vec2::new(1366.0, height));
+        let charts = [
+            (Pane::Samples, "The samples"),
+            (Pane::Curve, "The curve D over ξ"),
+            (Pane::Convergence, "Error against time"),
+        ];
+        for (pane, chart) in charts {
+            harness.reveal(pane);
+            see_label(&mut harness, chart);
+            let bottom = harness.get_by_label(chart).rect().bottom();
+            assert!(bottom < height - 28.0, "{chart}: {bottom} of {height}");
+        }
+        harness.click(Role::Button, "View");
+        let last = harness.get_by_label_contains("Panels").rect().bottom();
+        assert!(last < height, "{last} of {height}");
+        harness.key_press(egui::Key::Escape);
+        harness.run_steps(2);
+    }
+}
+
 /// A panel is closed and opened by its tick in the menu *View*.
 #[test]
 fn panels_are_closed_and_come_back() {
     let mut harness = editor();
     let toggle = |harness: &mut Editor| {
         harness.click(Role::Button, "View");
+        harness.get_by_label_contains("Panels").click();
+        harness.run_steps(3);
         harness.click(Role::CheckBox, "Snapshots");
     };
     let is_there = |harness: &Editor| harness.query_by_label_contains("Pin a snapshot").is_some();

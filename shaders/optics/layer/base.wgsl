@@ -7,18 +7,16 @@ fn base_shape() -> LobeShape {
 }
 
 fn base_albedo(material: Material, surface: Surface, left: vec3f) -> vec3f {
-    var reflected = material.base_color * (left * (1.0 - material.metalness));
-    if PLAN_TRANSMISSION {
-        reflected *= 1.0 - material.transmission_weight;
-    }
-    return reflected;
+    return material.base_color * (left * (1.0 - material.metalness)) * (1.0 - material.transmission_weight);
 }
 
 fn base_toward(material: Material, layers: Layers, surface: Surface, wi: vec3f) -> LayerToward {
     var color = layers.base.albedo;
     if PLAN_DIFFUSE_ROUGHNESS && material.diffuse_roughness > 0.0 && !is_within(material, surface) {
-        let cosines = vec2f(dot(surface.frame.normal, surface.wo), dot(surface.frame.normal, wi));
-        color *= rough_diffuse(material.base_color, material.diffuse_roughness, cosines, dot(surface.wo, wi));
+        color *= rough_diffuse(
+            material.base_color, material.diffuse_roughness, vec2f(view_cosine(surface), dot(surface.frame.normal, wi)),
+            dot(surface.wo, wi),
+        );
     }
     return LayerToward(color, layers.base.probability);
 }

@@ -7,8 +7,7 @@ fn coat_is_there(material: Material, surface: Surface) -> bool {
 }
 
 fn coat_lobe(material: Material, layers: Layers, surface: Surface) -> LayerLobe {
-    let frame = coat_frame(material, surface);
-    return LayerLobe(coat_is_there(material, surface), coat_shape(material), frame, layers.coat);
+    return LayerLobe(coat_is_there(material, surface), coat_shape(material), coat_frame(material, surface), layers.coat);
 }
 
 fn coat_frame(material: Material, surface: Surface) -> Frame {
@@ -59,16 +58,13 @@ fn coat_fresnel(material: Material, wo: vec3f, wi: vec3f) -> f32 {
 fn darkened(material: Material, surface: Surface, cosine: f32) -> vec3f {
     let terms = material_fresnel_terms(material, surface.is_inside);
     let dielectric = fresnel(of_dielectric(terms), 1.0);
-    var deeper = select(vec3f(), material.base_color, PLAN_BASE);
-    if PLAN_TRANSMISSION {
-        deeper = mix(deeper, material.transmission_tint, material.transmission_weight);
-    }
-    let base = fresnel(terms, 1.0) + (1.0 - dielectric) * deeper * (1.0 - material.metalness);
-    let rough = material.ggx_roughness;
-    let spread = mix(mix(1.0, rough, min(luminance(dielectric), 1.0)), rough, material.metalness);
+    let diffuse = select(vec3f(), material.base_color, PLAN_BASE);
+    let deeper = mix(diffuse, material.transmission_tint, material.transmission_weight);
+    let base = min(fresnel(terms, 1.0) + (1.0 - dielectric) * deeper * (1.0 - material.metalness), WHITE);
+    let below = mix(1.0, material.ggx_roughness, min(luminance(dielectric), 1.0));
+    let spread = mix(below, material.ggx_roughness, material.metalness);
     let inner = min(mix(fresnel_dielectric(cosine, material.coat_ior), material.coat_inner, spread), INNER_MAX);
-    let kept = vec3f(1.0 - inner) / (1.0 - min(base, WHITE) * inner);
-    return mix(WHITE, kept, material.coat_weight * material.coat_darkening);
+    return mix(WHITE, (1.0 - inner) / (1.0 - base * inner), material.coat_weight * material.coat_darkening);
 }
 
 // What the coat's medium leaves of the light of a layer below, by its directions.
@@ -77,8 +73,8 @@ fn coat_tint(material: Material, layers: Layers, surface: Surface, wi: vec3f) ->
         return WHITE;
     }
     let reflected = layers.coat.albedo.x;
-    let share = max(material.coat_weight - reflected, 0.0) / max(1.0 - reflected, 1e-9);
     let out = dot(surface.coat_normal, surface.wo);
     let back = select(abs(dot(surface.coat_normal, wi)), out, dot(surface.normal, wi) < 0.0);
-    return mix(WHITE, color_over(material, way_length(material, out) + way_length(material, back)), share);
+    let color = color_over(material, way_length(material, out) + way_length(material, back));
+    return mix(WHITE, color, max(material.coat_weight - reflected, 0.0) / max(1.0 - reflected, 1e-9));
 }

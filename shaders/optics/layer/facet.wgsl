@@ -26,7 +26,7 @@ fn mirrored_share(reflected: f32, refracted: f32) -> f32 {
 fn left_by_facet(material: Material, surface: Surface, cosines: vec2f) -> vec3f {
     let terms = material_fresnel_terms(material, surface.is_inside);
     var behind = cosines.y;
-    // Under a coat the reflection has another index than the refraction.
+    // Under a cover the reflection has another index than the refraction.
     if PLAN_COAT && terms.ior != material_ior_ahead(material, surface.is_inside) {
         behind = safe_sqrt(refracted_square(cosines.x, terms.ior)) / terms.ior;
     }

@@ -6,12 +6,12 @@ fn fuzz_is_there(material: Material, surface: Surface) -> bool {
 }
 
 fn fuzz_albedo(material: Material, surface: Surface) -> LayerAlbedo {
-    let share = material.fuzz_weight * fuzz_reflectance(material, dot(surface.frame.normal, surface.wo));
+    let share = material.fuzz_weight * fuzz_reflectance(material, dot(fuzz_normal(material, surface), surface.wo));
     return LayerAlbedo(material.fuzz_color * share, vec3f(1.0 - share));
 }
 
 fn fuzz_refined_sample(material: Material, surface: Surface, xi: vec3f) -> LobeSample {
-    let frame = fuzz_frame(surface);
+    let frame = fuzz_frame(material, surface);
     let bent_by = fuzz_matrix(material, dot(frame.normal, surface.wo));
     let cosine = local_from_world(frame, normalize_or(frame.normal + uniform_sphere(xi.xy), frame.normal));
     let bent = vec3f((cosine.x - bent_by.y * cosine.z) / bent_by.x, cosine.y / bent_by.x, cosine.z);
@@ -20,16 +20,25 @@ fn fuzz_refined_sample(material: Material, surface: Surface, xi: vec3f) -> LobeS
 }
 
 fn fuzz_refined(material: Material, surface: Surface, wi: vec3f) -> vec2f {
-    let frame = fuzz_frame(surface);
+    let frame = fuzz_frame(material, surface);
     let bent_by = fuzz_matrix(material, dot(frame.normal, surface.wo));
-    let folded = reflected_at_plane(wi, surface.normal);
-    let both = fuzz_density(bent_by, local_from_world(frame, wi)) + fuzz_density(bent_by, local_from_world(frame, folded));
+    let folded = local_from_world(frame, reflected_at_plane(wi, surface.normal));
+    let both = fuzz_density(bent_by, local_from_world(frame, wi)) + fuzz_density(bent_by, folded);
     return vec2f(select(0.0, both, dot(surface.normal, wi) > 0.0));
 }
 
+// Between the coat's and that of what lies below, by the coat's weight.
+fn fuzz_normal(material: Material, surface: Surface) -> vec3f {
+    let normal = surface.frame.normal;
+    if !PLAN_COAT || material.coat_weight == 0.0 {
+        return normal;
+    }
+    return normalize_or(mix(normal, surface.coat_normal, material.coat_weight), normal);
+}
+
 // The frame with the view in the half plane of the tangent.
-fn fuzz_frame(surface: Surface) -> Frame {
-    return frame_from_tangent(surface.frame.normal, surface.wo, 0.0);
+fn fuzz_frame(material: Material, surface: Surface) -> Frame {
+    return frame_from_tangent(fuzz_normal(material, surface), surface.wo, 0.0);
 }
 
 // What the matrix stretches the tangent plane by, and what it adds of the height along the view.

@@ -36,6 +36,6 @@ struct LayerChoice {
 fn cover_choose(albedo: vec3f, below: f32) -> vec2f {
     let reflected = max_component(albedo);
     let rest = (1.0 - reflected) * below;
-    let share = sampled_share(reflected / max(reflected + rest, 1e-9));
-    return vec2f(select(0.0, select(1.0, share, rest > 0.0), reflected > 0.0), reflected + rest);
+    let share = select(1.0, sampled_share(reflected / max(reflected + rest, 1e-9)), rest > 0.0);
+    return vec2f(select(0.0, share, reflected > 0.0), reflected + rest);
 }

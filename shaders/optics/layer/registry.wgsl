@@ -39,8 +39,10 @@ fn layer_lobe(layer: u32, material: Material, layers: Layers, surface: Surface) 
         return LayerLobe(material_has_specular(material), material_shape(material), surface.frame, layers.specular);
     }
     if PLAN_TRANSMISSION && (layer == LAYER_TRANSMISSION || !PLAN_BASE) {
-        let shape = material_transmission_shape(material, surface.is_inside);
-        return LayerLobe(material_transmits(material), shape, surface.frame, layers.transmission);
+        return LayerLobe(
+            material_transmits(material), material_transmission_shape(material, surface.is_inside), surface.frame,
+            layers.transmission,
+        );
     }
     return LayerLobe(material_has_base(material), base_shape(), surface.frame, layers.base);
 }
@@ -124,12 +126,9 @@ fn material_layers(material: Material, surface: Surface) -> Layers {
         layers.base.albedo = base_albedo(material, surface, left);
     }
     if material_transmits(material) {
-        layers.transmission.albedo = transmission_albedo(material, surface, left);
+        layers.transmission.albedo = transmission_albedo(material, left);
     }
-    var below_specular = luminance(layers.base.albedo);
-    if PLAN_TRANSMISSION {
-        below_specular += transmission_estimate(material, layers);
-    }
+    let below_specular = luminance(layers.base.albedo) + transmission_estimate(material, layers);
     let beneath = specular_choose(material, &layers, below_specular);
     let coat = cover_choose(layers.coat.albedo, beneath);
     layers.coat.probability = coat.x;
@@ -160,7 +159,7 @@ fn material_normal(material: Material, surface: Surface, layers: Layers) -> vec3
         normal = mix(normal, surface.coat_normal, layers.coat.probability);
     }
     if fuzz_is_there(material, surface) {
-        normal = mix(normal, surface.frame.normal, layers.fuzz.probability);
+        normal = mix(normal, fuzz_normal(material, surface), layers.fuzz.probability);
     }
     return normal;
 }

@@ -38,16 +38,18 @@ fn material_steps(evaluates: bool, draws: bool) -> vec2u {
 fn material_sample(
     material: Material, surface: Surface, layers: Layers, numbers: MaterialNumbers, needs_density: bool,
 ) -> MaterialSample {
-    let steps = material_steps(false, true);
-    return material_scatter(material, surface, layers, steps, numbers, needs_density, MaterialLight()).drawn;
+    return material_scatter(
+        material, surface, layers, material_steps(false, true), numbers, needs_density, MaterialLight(),
+    ).drawn;
 }
 
 fn material_evaluate(
     material: Material, surface: Surface, layers: Layers, wi: vec3f, light_density: f32, competing: f32,
 ) -> vec3f {
-    let light = MaterialLight(wi, light_density, competing);
-    let steps = material_steps(true, false);
-    return material_scatter(material, surface, layers, steps, MaterialNumbers(), false, light).reflected;
+    return material_scatter(
+        material, surface, layers, material_steps(true, false), MaterialNumbers(), false,
+        MaterialLight(wi, light_density, competing),
+    ).reflected;
 }
 
 // Runs steps.x up to but not including steps.y. A loop, so that the lobes' code is in the kernel once: drivers inline every

@@ -14,14 +14,15 @@ fn specular_toward(material: Material, layers: Layers, surface: Surface, shape: 
     let terms = material_fresnel_terms(material, surface.is_inside);
     let cosine = half_vector_cosine(surface.wo, wi);
     let once = fresnel(terms, cosine);
-    let color = scattered_again(material, surface, shape, terms, cosine, once);
-    return LayerToward(color, specular_probability(material, layers, surface, wi, once));
+    return LayerToward(
+        scattered_again(material, surface, shape, terms, cosine, once),
+        specular_probability(material, layers, surface, wi, once),
+    );
 }
 
 fn specular_choose(material: Material, layers: ptr<function, Layers>, below: f32) -> f32 {
     let specular = luminance(layers.specular.albedo);
-    var share = sampled_share(specular / max(specular + below, 1e-9));
-    share = select(1.0, share, below > 0.0);
+    var share = select(1.0, sampled_share(specular / max(specular + below, 1e-9)), below > 0.0);
     // The part passed on is exactly the part not reflected, no estimate.
     share = select(share, min(specular, 1.0), passes_on(material));
     let through = (1.0 - share) * (transmission_estimate(material, *layers) / max(below, 1e-9));
@@ -35,7 +36,7 @@ fn specular_seen_albedo(material: Material, surface: Surface, share: LayerShare)
     if !material_has_specular(material) || has_more(material) {
         return share.albedo;
     }
-    return fresnel(material_fresnel_terms(material, surface.is_inside), dot(surface.frame.normal, surface.wo));
+    return fresnel(material_fresnel_terms(material, surface.is_inside), view_cosine(surface));
 }
 
 fn specular_pass_on(material: Material, layers: ptr<function, Layers>, weight: f32, probability: f32) -> bool {
@@ -52,7 +53,7 @@ fn has_more(material: Material) -> bool {
 }
 
 fn specular_albedos(material: Material, surface: Surface) -> mat2x3f {
-    var place = dot(surface.frame.normal, surface.wo);
+    var place = view_cosine(surface);
     var first = material.albedo_table;
     if is_within(material, surface) {
         place = albedo_place(place, material_ior_ahead(material, true));
@@ -76,13 +77,13 @@ fn specular_albedos(material: Material, surface: Surface) -> mat2x3f {
     return mat2x3f(rough_albedo(terms, integrals, film), rough_albedo(below, integrals, film));
 }
 
-// The dielectric's integral where a texture varies the coat over it.
+// The dielectric's integral where a texture varies the cover over it.
 fn dielectric_under_coat(material: Material, place: vec2f, bare: f32) -> f32 {
     let coated = rough_albedo_lookup(material.albedo_table + ROUGH_ALBEDO_LENGTH, place.x, place.y).x;
     let least = fresnel_f0(ior_under_coat(material, 0.0));
     let most = fresnel_f0(ior_under_coat(material, 1.0));
-    let share = (fresnel_f0(material.reflecting_ior) - least) / select(1.0, most - least, most != least);
-    return bare + (coated - bare) * share;
+    let beyond = fresnel_f0(material.reflecting_ior) - least;
+    return mix(bare, coated, beyond / select(1.0, most - least, most != least));
 }
 
 // The probability of sampling the specular lobe for a direction that it mirrors to with this Fresnel factor.

@@ -4,12 +4,8 @@
 #import "optics/layer/registry"
 #import "optics/scattering"
 
-fn transmission_albedo(material: Material, surface: Surface, left_by_specular: vec3f) -> vec3f {
-    var left = left_by_specular;
-    if !bends(material) {
-        left = max(1.0 - (1.0 - left) * interface_gain(material, surface, material_shape(material)), vec3f());
-    }
-    return material.transmission_tint * (left * (1.0 - material.metalness)) * material.transmission_weight;
+fn transmission_albedo(material: Material, left_by_specular: vec3f) -> vec3f {
+    return material.transmission_tint * (left_by_specular * (1.0 - material.metalness)) * material.transmission_weight;
 }
 
 fn transmission_toward(
@@ -26,7 +22,7 @@ fn transmission_toward(
         toward.probability = (1.0 - layers.base.probability) * (1.0 - mirrored_share(reflected, luminance(left)));
     }
     if bends(material) {
-        toward.color = left * interface_gain(material, surface, shape);
+        toward.color = left * interface_gain(material, surface, shape, false);
     }
     return toward;
 }

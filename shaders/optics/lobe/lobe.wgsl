@@ -91,35 +91,28 @@ struct LobeView {
     frame: Frame,
     normal: vec3f,
     wo: vec3f,
-    // Roughness of the lobe that the reflection shows.
-    roughness: f32,
+    // The lobe that the reflection shows.
+    seen: LobeShape,
 }
 
 fn lobe_view(shape: LobeShape, frame: Frame, surface_normal: vec3f, wo: vec3f) -> LobeView {
-    var view = LobeView(frame, surface_normal, wo, shape.roughness);
+    var view = LobeView(frame, surface_normal, wo, shape);
     if refracts_at_facets(shape) {
         view.normal = -surface_normal;
     } else if shape.eta != 0.0 {
         let behind = refracted(wo, frame.normal, shape.eta);
         if !behind.is_total {
             let turned = Frame(frame.tangent, -frame.bitangent, -frame.normal);
-            let roughness = refracting_roughness(shape.lobe, shape.roughness, shape.eta);
-            view = LobeView(turned, -surface_normal, mirrored_about(behind.wi, frame.normal), roughness);
+            view = LobeView(turned, -surface_normal, mirrored_about(behind.wi, frame.normal), shape);
+            view.seen.roughness = refracting_roughness(shape.lobe, shape.roughness, shape.eta);
         }
     }
     return view;
 }
 
-fn seen_lobe(shape: LobeShape, view: LobeView) -> LobeShape {
-    var seen = shape;
-    seen.roughness = view.roughness;
-    return seen;
-}
-
 fn lobe_sample(shape: LobeShape, frame: Frame, surface_normal: vec3f, wo: vec3f, xi: vec3f) -> LobeSample {
     let view = lobe_view(shape, frame, surface_normal, wo);
-    let seen = seen_lobe(shape, view);
-    var raw = raw_sample(seen, view.frame, view.wo, xi);
+    var raw = raw_sample(view.seen, view.frame, view.wo, xi);
     var weight = 0.0;
     if refracts_at_facets(shape) {
         let behind = facet_refracted(wo, raw, shape.eta);
@@ -127,7 +120,7 @@ fn lobe_sample(shape: LobeShape, frame: Frame, surface_normal: vec3f, wo: vec3f,
         weight = facet_weight(shape, frame, wo, raw, facet_mirror(frame, wo, raw, shape.eta));
         weight = select(weight, 0.0, behind.is_total);
     } else {
-        weight = raw_weight(seen, view.frame, view.wo, raw);
+        weight = raw_weight(view.seen, view.frame, view.wo, raw);
         if is_hemispherical(shape.lobe) {
             weight = select(0.0, weight, dot(view.frame.normal, raw) > 0.0);
         }
@@ -172,10 +165,9 @@ fn raw_evaluate(shape: LobeShape, view: LobeView, wi: vec3f) -> vec2f {
     } else if is_hemispherical(shape.lobe) && dot(view.frame.normal, wi) <= 0.0 {
         return vec2f();
     }
-    let seen = seen_lobe(shape, view);
-    let density = raw_density(seen, view.frame, view.wo, mirrored) * factor;
+    let density = raw_density(view.seen, view.frame, view.wo, mirrored) * factor;
     if at_facets {
         return vec2f(density * facet_weight(shape, view.frame, view.wo, wi, mirrored), density);
     }
-    return vec2f(density * raw_weight(seen, view.frame, view.wo, wi), density);
+    return vec2f(density * raw_weight(view.seen, view.frame, view.wo, wi), density);
 }

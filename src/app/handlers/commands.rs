@@ -3,6 +3,7 @@
 use std::time::Instant;
 
 use crate::app::actions::{Action, Command};
+use crate::app::book::KEYS;
 use crate::app::desk::PICTURE_SIZE;
 use crate::app::handlers::pictures::Destination;
 use crate::app::kit::keys;
@@ -20,7 +21,7 @@ use crate::app::sheets::{
     turntable::Preview,
     unsaved::Then,
 };
-use crate::app::workspaces::Change;
+use crate::app::workspaces::{LOOK, MEASURE};
 use crate::app::{App, is_dragging};
 use crate::document::{CameraSettings, Denoise, Document, History, MaterialSettings, PARAMETERS, parameter, setting};
 use crate::scene::{
@@ -81,14 +82,14 @@ impl App {
             Action::UseBookmark(number) => {
                 if let Some(bookmark) = self.document.bookmarks.get(number) {
                     self.document.camera = bookmark.camera;
-                    self.edits.note("Apply bookmark", "");
+                    self.edits.did("Apply bookmark");
                 }
             }
             Action::Reveal(pane) => self.reveal(pane),
             Action::Close(pane) => layout::close(&mut self.layout, pane),
-            Action::ChangeWorkspaces(change) => {
+            Action::UseWorkspace(name) => {
                 self.maximise(false);
-                self.workspaces.change(change, &mut self.layout);
+                self.workspaces.change(name, &mut self.layout);
             }
             Action::Edit(key) => self.edit_parameter(ctx, key),
             Action::UseEngine(choice) => {
@@ -168,11 +169,11 @@ impl App {
             }
             Command::ResetCamera => {
                 self.document.camera = CameraSettings::default();
-                self.edits.note("Reset the camera", "");
+                self.edits.did("Reset the camera");
             }
             Command::FrameAll => {
                 self.frame_all();
-                self.edits.note("Frame all", "");
+                self.edits.did("Frame all");
             }
             Command::FrontView => self.look_along(0.0, 0.0),
             Command::SideView => self.look_along(90.0, 0.0),
@@ -210,7 +211,7 @@ impl App {
             }
             Command::ShowObjects => {
                 self.document.hidden_objects.clear();
-                self.edits.note("Show all objects", "");
+                self.edits.did("Show all objects");
             }
             Command::Maximise => {
                 self.maximise(!self.is_maximised);
@@ -225,7 +226,7 @@ impl App {
             Command::Region => self.viewport.draw_region(),
             Command::ClearRegion => {
                 self.document.render.region = None;
-                self.edits.note("Clear the render region", "");
+                self.edits.did("Clear the render region");
             }
             Command::ResetLayout => {
                 self.layout = self.workspaces.at_first();
@@ -276,7 +277,7 @@ impl App {
                 };
             }
             Command::Manual => book::ask(ctx, self.topic(ctx)),
-            Command::Shortcuts => self.sheet = Sheet::Shortcuts,
+            Command::Shortcuts => book::ask(ctx, KEYS),
             Command::ModelFile => self.sheet = Sheet::ModelFile,
             Command::About => self.sheet = Sheet::About,
             Command::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
@@ -315,7 +316,7 @@ impl App {
     fn look_from(&mut self, yaw_deg: f64, pitch_deg: f64) {
         let camera = &mut self.document.camera;
         (camera.yaw_deg, camera.pitch_deg, camera.position) = (yaw_deg, pitch_deg, None);
-        self.edits.note("Look from a side", "");
+        self.edits.did("Look from a side");
     }
 
     /// The same in parallel rays.
@@ -343,7 +344,7 @@ impl App {
         for slot in self.shared.selection.slots() {
             *self.document.material_mut(slot) = material.clone();
         }
-        self.edits.note(label, "");
+        self.edits.did(label);
     }
 
     /// Looks at the chosen objects, or the surfaces of the selected slots, from where the camera is.
@@ -365,7 +366,7 @@ impl App {
         camera.target = Some(geometry.world_from_units(center).to_array());
         camera.distance = Some(distance * geometry.world_units_per_unit);
         camera.position = None;
-        self.edits.note("Frame selected", "");
+        self.edits.did("Frame selected");
     }
 
     /// Materials, environments, views of the camera, workspaces and recent files.
@@ -390,10 +391,8 @@ impl App {
                 Action::UseBookmark(number),
             ));
         }
-        for name in self.workspaces.names() {
-            let action = Action::ChangeWorkspaces(Change::Use(name.to_owned()));
-            things.push(Findable::new(format!("Workspace {name}"), action));
-        }
+        let workspace = |name| Findable::new(format!("Workspace {name}"), Action::UseWorkspace(name));
+        things.extend([LOOK, MEASURE].map(workspace));
         for path in &self.shared.recent.paths {
             things.push(Findable::new(
                 format!("Open {}", file_name(path)),
@@ -412,12 +411,10 @@ impl App {
         found
     }
 
-    /// With its tags, and whether it is a favourite, as in the browser.
+    /// With whether it is a favourite in the browser.
     fn of_browser(&self, key: String, label: String, action: Action) -> Findable {
-        let kept = &self.shared.shelves.kept;
         Findable {
-            tags: kept.tags_of(&key),
-            is_favourite: kept.favourites.contains(&key),
+            is_favourite: self.shared.shelves.kept.favourites.contains(&key),
             ..Findable::new(label, action)
         }
     }

@@ -59,9 +59,8 @@ pub fn finish(finish: impl FnOnce(&mut App, &egui::Context) -> bool + Send + 'st
 
 impl Files {
     pub fn new(ctx: egui::Context) -> std::io::Result<Self> {
-        let repaint = ctx.clone();
         Ok(Self {
-            watched: Watched::new(move || repaint.request_repaint())?,
+            watched: Watched::default(),
             disk: Disk::new(ctx)?,
             project: None,
             dropped: None,
@@ -229,7 +228,7 @@ impl App {
     pub fn replace_document(&mut self, document: Document, label: String) {
         self.document = document;
         self.shared.selection.slot = 0;
-        self.edits.note(label, "");
+        self.edits.did(label);
     }
 
     /// Goes on with a project that has been read.
@@ -292,7 +291,7 @@ impl App {
             Purpose::Reference => {
                 let before = self.document.view.reference.take().unwrap_or_default();
                 self.document.view.reference = Some(Reference { file: path, ..before });
-                self.edits.note("Choose a reference image", "");
+                self.edits.did("Choose a reference image");
             }
             Purpose::Texture(target) => self.put_textures(&[(target, UserTexture::of(path))]),
             Purpose::OpenMeasured => self.shared.measured = Some(path),
@@ -316,7 +315,7 @@ impl App {
     pub fn report_unsaved(&mut self, purpose: Purpose) {
         let title = purpose.title();
         self.warn(format!(
-            "{title}: no file was chosen, nothing is saved. If no dialog was seen: File › Type file names"
+            "{title}: no file was chosen, nothing is saved. If no dialog was seen: Ctrl+K, Type file names"
         ));
     }
 
@@ -333,7 +332,7 @@ impl App {
     fn use_lut(&mut self, path: PathBuf) {
         // Tables are small: this one is read at once, so that errors are reported here.
         if self.taken(lut::load(&path)).is_some() {
-            self.edits.note(format!("Show through {}", file_name(&path)), "");
+            self.edits.did(format!("Show through {}", file_name(&path)));
             self.document.view.lut = Some(path);
         }
     }
@@ -344,7 +343,7 @@ impl App {
             && let Some(light) = self.document.lighting.area_lights.get_mut(number)
         {
             (light.profile, light.shape) = (Some(ProfileFile::new(&path)), AreaLightShape::Sphere);
-            self.edits.note("Choose a light profile", "");
+            self.edits.did("Choose a light profile");
         }
     }
 
@@ -441,7 +440,7 @@ impl App {
                 material.put_texture(*target, put);
             }
         }
-        self.edits.note(label, "");
+        self.edits.did(label);
         self.edits.history.seal();
     }
 

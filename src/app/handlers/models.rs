@@ -6,6 +6,7 @@ use std::sync::Arc;
 use crate::app::App;
 use crate::app::actions::{Action, Command};
 use crate::app::handlers::files::{kind, textures_in};
+use crate::document::GroundKind;
 use crate::document::of_model::{lights_left_out, materials_of};
 use crate::import::{environment, is_model};
 use crate::scene::{
@@ -213,10 +214,22 @@ impl App {
         self.document.import = options;
         if !is_shown_anew {
             self.frame_all();
+            if is_file {
+                self.document.ground = true;
+                self.match_ground();
+            }
             let left_out = self.document.add_lights_and_cameras(model);
             self.report_all(lights_left_out(left_out));
         }
-        self.edits.note(format!("{MODEL_CHANGED} {}", model.name), "");
+        self.edits.did(format!("{MODEL_CHANGED} {}", model.name));
+    }
+
+    /// The ground catches shadows alone where it would stand before a photograph.
+    pub fn match_ground(&mut self) {
+        let lighting = &mut self.document.lighting;
+        if matches!(lighting.environment, EnvironmentSource::File(_)) && lighting.ground.kind == GroundKind::Plane {
+            lighting.ground.kind = GroundKind::ShadowCatcher;
+        }
     }
 
     /// Takes over what files hold now that were saved by another program. Materials that were edited stay, the others are
@@ -242,7 +255,7 @@ impl App {
         if materials != self.document.materials {
             self.document.materials = materials;
             self.shared.selection.slot = self.shared.selection.slot.min(model.slots.len().saturating_sub(1));
-            self.edits.note(format!("Read {} again", model.name), "");
+            self.edits.did(format!("Read {} again", model.name));
         }
     }
 
@@ -259,14 +272,14 @@ impl App {
     }
 
     /// Has the files looked at that are shown, and those read again that another program saved.
-    pub fn watch_files(&mut self) {
+    pub fn watch_files(&mut self, ctx: &egui::Context) {
         let Some(scene) = self.scene() else { return };
         let mut files = scene.model.files.clone();
         if let EnvironmentSource::File(path) = &scene.document.lighting.environment {
             files.push(path.clone());
         }
         files.extend(scene.document.pictures().map(Path::to_owned));
-        if self.files.watched.watch(files) {
+        if self.files.watched.watch(ctx, files) {
             self.worker.reload();
             self.restart_rival();
         }

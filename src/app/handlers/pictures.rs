@@ -17,7 +17,6 @@ use crate::render::{
     output::{self, Layers},
     worker::Activity,
 };
-use crate::scene::path_text::file_name;
 use crate::store::{
     exchange::{self, Registered, Subject, report::Outcome},
     picture::png_bytes,
@@ -142,12 +141,11 @@ impl App {
         let Some(format) = self.taken(exchange::by_ending(&path)) else {
             return;
         };
-        let preset = self.files.exported.take();
+        let preset = self.files.exported.clone();
         let takes_model = format.takes_models() && preset.is_none();
         let material = preset.unwrap_or_else(|| self.desk_material());
         let name = material.name.clone();
-        let file = file_name(&path);
-        self.note(format!("{file}: rendering balls to show what it loses …"));
+        self.export.begin(Some(path.clone()));
         let subject = if takes_model {
             Subject {
                 materials: self.document.materials.clone(),
@@ -157,11 +155,16 @@ impl App {
         } else {
             Subject::of(material)
         };
+        let asked = path.clone();
         self.files.disk.beside(Task::List, move || {
             let ready = ready(&subject, &name, &path, format);
             finish(move |app, ctx| {
-                let ready = app.taken(ready);
-                ready.into_iter().for_each(|ready| app.export.ask(ctx, ready));
+                if app.export.path.as_ref() == Some(&asked) {
+                    match app.taken(ready) {
+                        Some(ready) => app.export.ask(ctx, ready),
+                        None => drop(app.export.begin(None)),
+                    }
+                }
                 true
             })
         });
@@ -187,7 +190,10 @@ impl App {
     /// Shows what is lost, and writes where that was agreed to.
     pub fn show_export(&mut self, ctx: &egui::Context) {
         let Some(answer) = self.export.show(ctx) else { return };
-        let prepared = self.export.take();
+        if let Answer::Other(path) = answer {
+            return self.prepare_export(path);
+        }
+        let prepared = self.export.begin(None);
         let Some(prepared) = prepared.filter(|_| answer == Answer::Write) else {
             return;
         };

@@ -121,7 +121,7 @@ impl App {
     fn take_rival(&mut self, label: &'static str) {
         let slot = self.shared.selection.slot;
         self.document.materials = self.shared.compare.rival_document(&self.document, slot).materials;
-        self.edits.note(label, "");
+        self.edits.did(label);
     }
 
     /// Keeps B's renderer on what A's was given.

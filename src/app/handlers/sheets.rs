@@ -123,15 +123,14 @@ impl App {
         if self.leftovers.is_empty() {
             return;
         }
-        let modal = egui::Modal::new(egui::Id::unique("recovery")).show(ctx, |ui| sheet(ui, &self.leftovers));
-        if let Some((at, choice)) = modal.inner {
-            let leftover = self.leftovers.remove(at);
-            match choice {
-                Choice::Discard => self.autosave.discard(leftover.index),
-                Choice::Restore => self.restore(leftover),
+        match sheets::question(ctx, "recovery", Choice::Later, |ui| sheet(ui, &self.leftovers)) {
+            Some(Choice::Discard(at)) => self.autosave.discard(self.leftovers.remove(at).index),
+            Some(Choice::Restore(at)) => {
+                let leftover = self.leftovers.remove(at);
+                self.restore(leftover);
             }
-        } else if modal.should_close() {
-            self.leave_leftovers();
+            Some(Choice::Later) => self.leave_leftovers(),
+            None => {}
         }
     }
 
@@ -231,14 +230,14 @@ impl App {
         }
         let snapshot = self.worker.snapshot();
         let sheet = &mut self.turntable;
-        let modal = egui::Modal::new(egui::Id::unique("turntable")).show(ctx, |ui| {
+        let begins = sheets::question(ctx, "turntable", false, |ui| {
             ui.set_width(440.0);
             book::heading(ui, "Turntable", TURNTABLE);
             ui.add_space(theme::GAP);
             sheet.settings(ui, &snapshot.progress)
         });
-        sheet.is_open = !modal.should_close() && !modal.inner;
-        if modal.inner {
+        sheet.is_open = begins.is_none();
+        if begins == Some(true) {
             let table = self.turntable.order(&self.document);
             self.enqueue(Task::Turntable(Box::new(table)));
         }
@@ -248,7 +247,7 @@ impl App {
     /// panel under the pointer.
     pub fn topic(&self, ctx: &Context) -> &'static str {
         let is_asked = self.unsaved.is_open() || !self.leftovers.is_empty();
-        let is_searching = matches!(self.sheet, Sheet::Palette { .. } | Sheet::Shortcuts);
+        let is_searching = matches!(self.sheet, Sheet::Palette { .. });
         let sheets = [
             (self.sheet == Sheet::ModelFile, MODEL_FILE),
             (matches!(self.sheet, Sheet::Path { .. }), EXPLAIN),

@@ -59,6 +59,13 @@ pub fn log_log(name: &str, axes: [&str; 2], height: f32, margin: [f32; 2]) -> Pl
         .set_margin_fraction(margin.into())
 }
 
+/// Height of a chart: a share of the width that is left, but no more than the panel has beside the rest of its contents,
+/// points.
+pub fn height(ui: &Ui, share: f32, rest: f32) -> f32 {
+    let room = ui.clip_rect().height() - rest;
+    (share * ui.available_width()).min(room).clamp(110.0, 420.0)
+}
+
 /// A line through points.
 pub fn line(name: impl Into<String>, points: Vec<[f64; 2]>, color: Color32, width: f32) -> Line<'static> {
     Line::new(name, points).color(color).width(width)

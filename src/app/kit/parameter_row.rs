@@ -11,6 +11,8 @@ use crate::document::{Kind, Parameter, Value};
 pub fn has_row<T>(parameter: &Parameter<T>) -> bool {
     match &parameter.kind {
         Kind::Curve => false,
+        // The f-number stands for it.
+        _ if parameter.key == "camera.aperture" => false,
         Kind::Optional { kind, at_first, .. } => at_first.is_some() || matches!(**kind, Kind::Toggle),
         _ => true,
     }
@@ -21,6 +23,17 @@ pub type Beside<'a> = Option<&'a mut dyn FnMut(&mut Ui)>;
 
 /// Shows the row of a parameter of something, under a name that is unique in the window; true where it was edited.
 pub fn edit<T: Default>(ui: &mut Ui, parameter: &Parameter<T>, full: &str, of: &mut T, beside: Beside) -> bool {
+    edit_from(ui, parameter, full, of, (parameter.default_value(), beside))
+}
+
+/// The same, reset to a value of its own.
+pub fn edit_from<T: Default>(
+    ui: &mut Ui,
+    parameter: &Parameter<T>,
+    full: &str,
+    of: &mut T,
+    (default, beside): (Value, Beside),
+) -> bool {
     let mut value = parameter.get(of);
     let name = Name {
         full,
@@ -28,7 +41,7 @@ pub fn edit<T: Default>(ui: &mut Ui, parameter: &Parameter<T>, full: &str, of: &
         symbol: parameter.symbol,
         help: parameter.help,
     };
-    let is_edited = widgets::value_row(ui, name, &mut value, parameter.default_value(), |ui, value| {
+    let is_edited = widgets::value_row(ui, name, &mut value, default, |ui, value| {
         let Some(beside) = beside else {
             return control(ui, parameter, full, value);
         };

@@ -473,19 +473,12 @@ pub fn comes_and_goes<R>(ui: &mut Ui, content: impl FnOnce(&mut Ui) -> R) -> R {
 
 /// A field for a new name, which has the keys. `Some(None)`: left as it was.
 pub fn name_field(ui: &mut Ui, name: &mut String) -> Option<Option<String>> {
-    let is_done = text_field(ui, "New name", name)?;
-    let name = name.trim().to_owned();
-    Some((is_done && !name.is_empty()).then_some(name))
-}
-
-/// A field for words, which has the keys. `Some`: whether they are to count.
-pub fn text_field(ui: &mut Ui, name: &str, text: &mut String) -> Option<bool> {
-    let field = wide_field(ui, text, name);
+    let field = wide_field(ui, name, "New name");
     if ui.input(|input| input.key_pressed(Key::Escape)) {
-        return Some(false);
+        return Some(None);
     }
     if field.lost_focus() {
-        return Some(true);
+        return Some(Some(name.trim().to_owned()).filter(|name| !name.is_empty()));
     }
     if !field.has_focus() {
         field.scroll_to_me(Some(Align::Center));
@@ -574,6 +567,11 @@ pub fn swatch(ui: &mut Ui, size: Vec2, color: Color32) {
     let (place, _) = ui.allocate_exact_size(size, Sense::hover());
     let line = ui.visuals().widgets.noninteractive.bg_stroke;
     ui.painter().rect(place, 3.0, color, line, StrokeKind::Inside);
+}
+
+/// Whether a click chooses something beside what is chosen.
+pub fn is_beside_others(ui: &Ui) -> bool {
+    ui.input(|input| input.modifiers.command || input.modifiers.shift)
 }
 
 /// The rank to which parts fit into a room with all that rank before them, points.

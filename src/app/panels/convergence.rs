@@ -4,7 +4,7 @@ use egui_plot::{HLine, LineStyle, Points};
 
 use super::*;
 use crate::analysis::noise::Noise;
-use crate::app::kit::charts::{line, log_log};
+use crate::app::kit::charts::{height, line, log_log};
 use crate::app::kit::words::{duration, error, percent, percent_short};
 use crate::document::RenderSettings;
 use crate::render::{Measurement, Progress};
@@ -91,7 +91,7 @@ fn plot(ui: &mut Ui, history: &[Measurement], wanted: Option<f64>) {
         let error = last.noise.relative * (last.engine_seconds / seconds).sqrt();
         [seconds.log10(), error.log10()]
     });
-    let height = (0.7 * ui.available_width()).clamp(160.0, 420.0);
+    let height = height(ui, 0.7, 130.0);
     let shown = log_log("convergence", ["Render time", "Relative error"], height, [0.04, 0.08]).show(ui, |plot_ui| {
         let dashed = LineStyle::dashed_dense();
         plot_ui.line(line("1/√t", law.to_vec(), weak, 1.5).style(dashed));

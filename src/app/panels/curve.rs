@@ -3,7 +3,7 @@
 use egui_plot::{Plot, PlotUi, Points};
 
 use super::*;
-use crate::app::kit::charts::{line, nearest, rounded_up, short, still};
+use crate::app::kit::charts::{height, line, nearest, rounded_up, short, still};
 use crate::app::kit::widgets::Name;
 use crate::document::custom_curve::{CustomCurve, DISTANCE_MAX, DISTANCE_MIN, POINTS_MAX, XI_STEP_MIN};
 use crate::optics::curve::{Curve, curve_density, curve_distance, curve_distance_max};
@@ -11,7 +11,7 @@ use crate::optics::curve::{Curve, curve_density, curve_distance, curve_distance_
 /// Steps of a drawn line.
 const STEPS: usize = 240;
 /// Points that a named curve becomes when it is edited.
-const POINTS: usize = 11;
+const POINTS: usize = 33;
 /// Steps of the line along which those points are spread.
 const FINE_STEPS: usize = 1000;
 /// What ctrl snaps to.
@@ -96,7 +96,7 @@ fn head(ui: &mut Ui, desk: &mut Desk, material: &mut crate::document::MaterialSe
                 if widgets::pressed(ui, "Edit as custom", help) {
                     material.custom_curve = from_named(material.curve);
                     material.curve = Curve::Custom;
-                    desk.edits.note("Edit the curve", "");
+                    desk.edits.did("Edit the curve");
                 }
             });
         }
@@ -128,8 +128,9 @@ fn shares(steps: usize) -> impl Iterator<Item = f64> {
 
 /// A plot from 0 to these ends.
 fn plot<'a>(ui: &Ui, id: &str, label: &'a str, [right, top]: [f64; 2]) -> Plot<'a> {
-    let height = (0.62 * ui.available_width()).clamp(120.0, 260.0);
-    still(id, height, [short, short])
+    // Two of them, and the rows.
+    let rest = 0.5 * (ui.clip_rect().height() + 150.0);
+    still(id, height(ui, 0.62, rest), [short, short])
         .x_axis_label(label)
         .include_x(0.0)
         .include_x(right)
@@ -163,8 +164,8 @@ impl CurvePanel {
             }
         });
         let response = shown.response.accessible_name("The curve D over ξ");
-        if is_drawn_on {
-            // The help would lie over what is being drawn.
+        if is_drawn_on || self.selected.is_some() {
+            // The help would lie over what is being drawn, and over the point's numbers.
             return;
         }
         // Beside the plot: at the pointer it would lie over what is looked at.

@@ -1,6 +1,7 @@
 //! Renders that go on beside the window: what waits, how far it is, and what came of it.
 
 use super::*;
+use crate::app::kit::words::time_left;
 use crate::render::queue::{Entry, State};
 
 /// The renders beside the window.
@@ -72,6 +73,8 @@ fn row(ui: &mut Ui, desk: &Desk, entry: &Entry, can_be_first: bool) {
         State::Rendering(share) => {
             let bar = ui.add(ProgressBar::new(*share as f32).show_percentage());
             bar.accessible_name(format!("Progress of {name}"));
+            let left = time_left(*share, entry.since.elapsed().as_secs_f64());
+            widgets::note(ui, left.unwrap_or_default());
         }
         State::Done(words) | State::Cancelled(words) => widgets::note(ui, words),
         State::Failed(why) => widgets::failure(ui, why.clone()),

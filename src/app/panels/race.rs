@@ -5,7 +5,7 @@ use std::time::Duration;
 use egui_plot::{PlotPoint, PlotResponse, Points, Text};
 
 use super::*;
-use crate::app::kit::charts::{line, log_log, nearest};
+use crate::app::kit::charts::{height, line, log_log, nearest};
 use crate::app::kit::tile::pixels;
 use crate::app::kit::words::{about, duration, percent};
 use crate::app::study::{StudyWorker, engine, small_document};
@@ -22,6 +22,8 @@ const SIDE_MAX: u32 = 160;
 const THUMBNAIL: f32 = 112.0;
 /// Kinds that are chosen at first.
 const CHOSEN: [&str; 3] = ["strategy", "bounces", "fresnel"];
+/// Kinds for developers: `study accuracy` races them.
+const FOR_DEVELOPERS: [&str; 2] = ["sequence", "effect"];
 /// How long each technique renders at first.
 const SECONDS: f64 = 2.0;
 /// References are rendered for up to this many times each technique's racing time.
@@ -65,7 +67,7 @@ impl Panel for RacePanel {
             let most = seconds_at_most(&techniques(&chosen, &scene.job.plan), seconds);
             format!("takes at most {}", about(most))
         });
-        state.worker.controls(ui, desk, ("Run the race", help), takes, |desk| {
+        state.worker.controls(ui, desk, ("Run the race", help, true), takes, |desk| {
             let document = small_document(desk, SIDE_MAX);
             let scene = desk.snapshot.scene.as_ref();
             let plan = scene.map_or_else(Plan::general, |scene| scene.job.plan.clone());
@@ -112,7 +114,7 @@ fn seconds_at_most(techniques: &[Technique], seconds: f64) -> f64 {
 }
 
 fn choices(ui: &mut Ui, state: &mut RacePanel) {
-    for group in GROUPS {
+    for group in GROUPS.iter().filter(|group| !FOR_DEVELOPERS.contains(&group.name)) {
         let mut is_chosen = state.chosen.contains(&group.name);
         let choice = ui.checkbox(&mut is_chosen, group.label).on_hover_text(group.help);
         if choice.changed() {
@@ -147,7 +149,7 @@ fn outcome(ui: &mut Ui, desk: &mut Desk, state: &mut RacePanel, race: &Arc<Race>
         // Undo takes the settings back.
         let Runner { technique, label, .. } = &race.runners[index];
         *desk.document = technique.apply(desk.document);
-        desk.edits.note(format!("Use the race's {}", label.to_lowercase()), "");
+        desk.edits.did(format!("Use the race's {}", label.to_lowercase()));
         state.worker.holds_for(desk.document);
     }
     pictures(ui, desk, state, race);
@@ -168,7 +170,7 @@ fn chart(ui: &mut Ui, race: &Race) -> Option<usize> {
     best.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let accent = theme::accent(ui);
     let weak = ui.visuals().weak_text_color();
-    let height = (0.8 * ui.available_width()).clamp(180.0, 420.0);
+    let height = height(ui, 0.8, 120.0);
     let time = format!("Time to a noise of {}", percent(race.noise));
     let shown: PlotResponse<()> = log_log("race", [&time, "Bias"], height, [0.2, 0.12]).show(ui, |plot_ui| {
         plot_ui.line(line("best", best, accent.gamma_multiply(0.6), 1.5));

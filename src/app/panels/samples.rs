@@ -3,9 +3,9 @@
 use egui_plot::{Bar, BarChart, Legend};
 
 use super::*;
-use crate::app::kit::charts::{line, short, still};
+use crate::app::kit::charts::{height, line, short, still};
 use crate::app::kit::words::short_number;
-use crate::app::services::beside::started;
+use crate::app::services::beside::Beside;
 use crate::job::scatter::ScatterRequest;
 use crate::matching::lobe_of_material;
 use crate::named::named;
@@ -13,7 +13,7 @@ use crate::optics::lobe::Horizon;
 use crate::optics::lobe::model::LobeModel;
 use crate::optics::vector::Vec3;
 use crate::render::EngineChoice;
-use crate::render::samples::{SampleQuery, SampleReport, SampleWorker, spawn_samples};
+use crate::render::samples::{SampleAnswer, SampleQuery, SampleReport, answers};
 
 /// The plot of angles goes on beyond its ends by this share, so that its labels stay within it.
 const ANGLE_MARGIN: f64 = 0.07;
@@ -41,8 +41,7 @@ const COUNTS: [(u32, &str, &str); 4] = [
 /// The samples that the engine draws of the lobe, as a cloud or against the angle.
 #[derive(Default)]
 pub struct SamplesPanel {
-    worker: Option<SampleWorker>,
-    asked: Option<SampleQuery>,
+    worker: Beside<SampleQuery, SampleAnswer>,
     count: Option<u32>,
     look: Look,
     compare: bool,
@@ -65,17 +64,10 @@ impl Panel for SamplesPanel {
         };
         controls(ui, desk, self);
         let state = self;
-        let Some(worker) = started(&mut state.worker, ui.ctx(), spawn_samples) else {
-            widgets::note(ui, "Cannot start a thread to draw samples.");
-            return;
-        };
-        if state.asked.as_ref() != Some(&query) {
-            worker.ask(query.clone());
-            state.asked = Some(query);
-        }
-        widgets::comes_and_goes(ui, |ui| widgets::failure(ui, worker.failure()));
-        match worker.latest() {
-            None if worker.is_busy() => {
+        let answer = state.worker.ask(ui.ctx(), "samples", query, answers());
+        widgets::comes_and_goes(ui, |ui| widgets::failure(ui, state.worker.failure()));
+        match answer {
+            None if state.worker.is_busy() => {
                 ui.add(Spinner::new());
             }
             None => {}
@@ -155,7 +147,7 @@ fn projected(report: &SampleReport, look: Look) -> impl Iterator<Item = [f32; 2]
 }
 
 fn cloud(ui: &mut Ui, state: &mut SamplesPanel, report: &Arc<SampleReport>) {
-    let side = ui.available_width().min(420.0);
+    let side = height(ui, 1.0, 250.0);
     let (rect, response) = ui.allocate_exact_size(Vec2::splat(side), Sense::hover());
     widgets::describe(&response, Role::Image, "The samples");
     ui.painter().rect_filled(rect, 3.0, ui.visuals().extreme_bg_color);
@@ -252,9 +244,8 @@ fn angle_plot(ui: &mut Ui, report: &SampleReport) {
     let bars = BarChart::new("drawn", bars.collect()).color(accent.gamma_multiply(0.45));
     let last = counted.iter().rfind(|[_, y]| *y > 0.0);
     let last = last.map_or(90.0, |[x, _]| (1.15 * x).clamp(5.0, 180.0));
-    let height = (0.8 * ui.available_width()).clamp(160.0, 320.0);
     let margin = ANGLE_MARGIN * last;
-    let shown = still("angle", height, [short, short])
+    let shown = still("angle", height(ui, 0.8, 280.0), [short, short])
         .x_axis_label("α: angle to the mirror direction, degrees")
         .legend(Legend::default().follow_insertion_order(true))
         .include_y(0.0)

@@ -1,29 +1,8 @@
-//! Threads beside the window, each started when it is first needed.
-
-use std::io;
+//! Work beside the window, on a thread that starts with the first query.
 
 use crate::render::background::{Background, Responder};
 
-/// What a thread calls when there is something new to show.
-pub type Repaint = Box<dyn Fn() + Send>;
-
-/// The thread, started if it is not there yet. `None` if the system gives none, which the log says.
-pub fn started<'a, Q, A>(
-    thread: &'a mut Option<Background<Q, A>>,
-    ctx: &egui::Context,
-    spawn: impl FnOnce(Repaint) -> io::Result<Background<Q, A>>,
-) -> Option<&'a Background<Q, A>> {
-    if thread.is_none() {
-        let ctx = ctx.clone();
-        match spawn(Box::new(move || ctx.request_repaint())) {
-            Ok(spawned) => *thread = Some(spawned),
-            Err(error) => log::error!("cannot start a thread: {error}"),
-        }
-    }
-    thread.as_ref()
-}
-
-/// A thread that is asked once for each query.
+/// A thread for queries, the latest of which wins.
 pub struct Beside<Q, A> {
     thread: Option<Background<Q, A>>,
     asked: Option<Q>,
@@ -36,7 +15,7 @@ impl<Q, A> Default for Beside<Q, A> {
     }
 }
 
-impl<Q: Clone + PartialEq + Send + 'static, A: Clone + Send + 'static> Beside<Q, A> {
+impl<Q: Send + 'static, A: Clone + Send + 'static> Beside<Q, A> {
     /// Asks, unless that was asked last, and returns the latest answer.
     pub fn ask(
         &mut self,
@@ -44,16 +23,43 @@ impl<Q: Clone + PartialEq + Send + 'static, A: Clone + Send + 'static> Beside<Q,
         name: &str,
         query: Q,
         work: impl FnMut(Q, &Responder<'_, A>) + Send + 'static,
-    ) -> Option<A> {
-        let thread = started(&mut self.thread, ctx, |repaint| Background::spawn(name, repaint, work))?;
+    ) -> Option<A>
+    where
+        Q: Clone + PartialEq,
+    {
         if self.asked.as_ref() != Some(&query) {
-            thread.ask(query.clone());
-            self.asked = Some(query);
+            self.asked = Some(query.clone());
+            self.ask_again(ctx, name, query, work);
         }
-        thread.latest()
+        self.latest()
+    }
+
+    /// Asks, whatever was asked before.
+    pub fn ask_again(
+        &mut self,
+        ctx: &egui::Context,
+        name: &str,
+        query: Q,
+        work: impl FnMut(Q, &Responder<'_, A>) + Send + 'static,
+    ) {
+        let thread = self.thread.get_or_insert_with(|| {
+            let ctx = ctx.clone();
+            Background::spawn(name, move || ctx.request_repaint(), work)
+        });
+        thread.ask(query);
     }
 
     pub fn latest(&self) -> Option<A> {
         self.thread.as_ref()?.latest()
+    }
+
+    /// Whether something asked for is still to come.
+    pub fn is_busy(&self) -> bool {
+        self.thread.as_ref().is_some_and(Background::is_busy)
+    }
+
+    /// Why there is no answer to the latest query, where its work failed.
+    pub fn failure(&self) -> Option<String> {
+        self.thread.as_ref()?.failure()
     }
 }

@@ -31,6 +31,11 @@ impl Edits {
         self.note = Some((label.into(), key.into()));
     }
 
+    /// Names an edit that is a step of its own.
+    pub fn did(&mut self, label: impl Into<Cow<'static, str>>) {
+        self.note(label, "");
+    }
+
     /// Takes the document as the frame left it; true where it changed.
     pub fn record(&mut self, document: &Document, is_dragging: bool) -> bool {
         if !is_dragging && self.last_change.is_some_and(|at| at.elapsed() > PAUSE) {

@@ -17,4 +17,3 @@ pub mod selection;
 pub mod shelves;
 pub mod viewing;
 pub mod watched;
-pub mod workspaces;

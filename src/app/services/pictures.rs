@@ -8,12 +8,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use egui::{ColorImage, TextureHandle, TextureOptions};
 use image::RgbaImage;
 
-use crate::app::services::beside::started;
+use crate::app::services::beside::Beside;
 use crate::document::MaterialSettings;
-use crate::render::{
-    background::Background,
-    thumbnails::{Subject, Thumbnail, Thumbnails, Wanted, spawn_thumbnails},
-};
+use crate::render::thumbnails::{Subject, Thumbnail, Thumbnails, Wanted, makes};
 use crate::scene::environment::{Environment, EnvironmentSource};
 
 /// What shows thumbnails: the first come first.
@@ -37,7 +34,7 @@ pub struct Pictures {
     /// Keeps them from one start to the next; without it none are made of materials.
     cache: Option<PathBuf>,
     hold: Arc<AtomicBool>,
-    worker: Option<Background<Wanted, Thumbnails>>,
+    worker: Beside<Wanted, Thumbnails>,
     /// By the part that shows them.
     wanted: [Vec<(String, Subject)>; 3],
     is_asked: bool,
@@ -103,11 +100,6 @@ impl Pictures {
         if self.wanted.iter().all(Vec::is_empty) {
             return;
         }
-        let Some(worker) = started(&mut self.worker, ctx, |repaint| {
-            spawn_thumbnails(self.cache.clone(), self.hold.clone(), repaint)
-        }) else {
-            return;
-        };
         let environment = loaded.map(|(_, environment)| environment);
         let is_loaded = environment.map(Arc::as_ptr) == self.loaded.as_ref().map(Arc::as_ptr);
         if !self.is_asked || !is_loaded {
@@ -121,11 +113,13 @@ impl Pictures {
             // Environments are made soonest.
             subjects.sort_by_key(|(_, subject)| matches!(subject, Subject::Material(_)));
             let loaded = loaded.map(|(source, environment)| (source.clone(), environment.clone()));
-            worker.ask(Wanted { subjects, loaded });
+            let work = makes(self.cache.clone(), self.hold.clone());
+            self.worker
+                .ask_again(ctx, "thumbnails", Wanted { subjects, loaded }, work);
             self.loaded = environment.cloned();
             self.is_asked = true;
         }
-        let Some(made) = worker.latest().filter(|made| !Arc::ptr_eq(made, &self.latest)) else {
+        let Some(made) = self.worker.latest().filter(|made| !Arc::ptr_eq(made, &self.latest)) else {
             return;
         };
         for (key, thumbnail) in made.iter() {

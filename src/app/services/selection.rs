@@ -20,7 +20,7 @@ pub struct Selection {
     pub slot: usize,
     /// The slots that were selected of other models, for when undo or redo brings them back.
     slots_of: Vec<(ModelSource, usize)>,
-    /// The tree was shown in this frame, and in the one before: outlines are drawn.
+    /// The tree was shown in this frame, and in the one before: objects are picked.
     pub is_shown: bool,
     pub was_shown: bool,
     /// The user has chosen something of this model: what is edited at first is not outlined.

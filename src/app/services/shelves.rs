@@ -1,7 +1,7 @@
-//! What the browser of materials and environments keeps: favourites, tags, the size of its images, the folders that it
+//! What the browser of materials and environments keeps: favourites, the size of its images, the folders that it
 //! watches and what lies in them.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
@@ -25,8 +25,6 @@ const INTERVAL: Duration = Duration::from_secs(2);
 pub struct KeptShelves {
     /// Those that come first.
     pub favourites: BTreeSet<String>,
-    /// By what is tagged.
-    pub tags: BTreeMap<String, BTreeSet<String>>,
     /// Folders that are watched.
     pub folders: Vec<PathBuf>,
     /// Side of a material's image, points; [`LIST`] and below are rows of a list.
@@ -63,7 +61,6 @@ impl Default for KeptShelves {
     fn default() -> Self {
         Self {
             favourites: BTreeSet::new(),
-            tags: BTreeMap::new(),
             folders: Vec::new(),
             picture_side: 80.0,
         }
@@ -76,28 +73,6 @@ impl KeptShelves {
         if !self.favourites.remove(key) {
             self.favourites.insert(key.to_owned());
         }
-    }
-
-    /// The tags of something, commas between them.
-    pub fn tags_of(&self, key: &str) -> String {
-        let tags: Vec<&str> = self.tags.get(key).into_iter().flatten().map(String::as_str).collect();
-        tags.join(", ")
-    }
-
-    /// Gives something the tags of a text, commas between them.
-    pub fn tag(&mut self, key: &str, text: &str) {
-        let tags = text.split(',').map(|tag| tag.trim().to_lowercase());
-        let tags: BTreeSet<String> = tags.filter(|tag| !tag.is_empty()).collect();
-        if tags.is_empty() {
-            self.tags.remove(key);
-        } else {
-            self.tags.insert(key.to_owned(), tags);
-        }
-    }
-
-    /// Every tag that something has.
-    pub fn all_tags(&self) -> BTreeSet<&str> {
-        self.tags.values().flatten().map(String::as_str).collect()
     }
 }
 

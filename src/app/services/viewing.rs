@@ -12,6 +12,8 @@ pub struct Viewing {
     pub shown: Shown,
     /// What every screen shows is marked.
     pub shows_safe_frames: bool,
+    /// The workspace is *Measure*.
+    pub measures: bool,
     /// What the next click is for.
     pub picks: Option<Pick>,
 }
@@ -21,6 +23,10 @@ pub struct Viewing {
 pub enum Pick {
     /// It says what is sharp.
     Focus,
+    /// Its angle between view and normal is that of the plots.
+    Angle,
+    /// The next click on a preset says what B is.
+    Rival,
     /// It says where the highlight of the area light with this number is seen.
     Highlight(usize),
 }

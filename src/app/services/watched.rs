@@ -3,10 +3,9 @@
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex};
 use std::time::{Duration, SystemTime};
 
-use crate::panics::lock;
+use crate::app::services::beside::Beside;
 
 /// From one look to the next. A file counts as saved when it was the same at two looks.
 const INTERVAL: Duration = Duration::from_millis(500);
@@ -14,32 +13,11 @@ const INTERVAL: Duration = Duration::from_millis(500);
 /// When a file was changed, and its length; nothing where it is not there.
 type Stamp = Option<(SystemTime, u64)>;
 
-/// The files that are looked at.
-pub struct Watched(Arc<Mutex<Files>>);
-
+/// The files that are looked at, and how many looks found one saved, as far as that was told.
 #[derive(Default)]
-struct Files {
-    /// As each was read, and at the last look.
-    stamps: HashMap<PathBuf, [Stamp; 2]>,
-    have_changed: bool,
-}
-
-impl Files {
-    /// Whether one of them has been saved.
-    fn look(&mut self) -> bool {
-        let mut is_news = false;
-        for (path, [read, seen]) in &mut self.stamps {
-            let now = stamp(path);
-            // While it is being replaced it is not there, while it is being written it grows.
-            if now.is_some() && now == *seen && now != *read {
-                *read = now;
-                is_news = true;
-            }
-            *seen = now;
-        }
-        self.have_changed |= is_news;
-        is_news
-    }
+pub struct Watched {
+    looks: Beside<Vec<PathBuf>, u64>,
+    told: Option<u64>,
 }
 
 fn stamp(path: &Path) -> Stamp {
@@ -48,32 +26,35 @@ fn stamp(path: &Path) -> Stamp {
 }
 
 impl Watched {
-    /// Starts the thread, which ends with this value. `repaint` is called when a file was saved.
-    pub fn new(repaint: impl Fn() + Send + 'static) -> std::io::Result<Self> {
-        let files = Arc::new(Mutex::new(Files::default()));
-        let of_thread = Arc::downgrade(&files);
-        std::thread::Builder::new().name("watched".to_owned()).spawn(move || {
-            loop {
-                std::thread::sleep(INTERVAL);
-                let Some(files) = of_thread.upgrade() else { return };
-                if lock(&files).look() {
-                    repaint();
-                }
-            }
-        })?;
-        Ok(Self(files))
-    }
-
     /// Watches these files from now on; those already watched keep their state. Whether one was saved since this was last
     /// called.
-    pub fn watch(&self, paths: Vec<PathBuf>) -> bool {
-        let mut files = lock(&self.0);
-        let mut known = std::mem::take(&mut files.stamps);
-        let with_stamps = |path: PathBuf| {
-            let stamps = known.remove(&path).unwrap_or_else(|| [stamp(&path); 2]);
-            (path, stamps)
-        };
-        files.stamps = paths.into_iter().map(with_stamps).collect();
-        std::mem::take(&mut files.have_changed)
+    pub fn watch(&mut self, ctx: &egui::Context, paths: Vec<PathBuf>) -> bool {
+        // As each was read, and at the last look.
+        let mut stamps: HashMap<PathBuf, [Stamp; 2]> = HashMap::new();
+        let mut saved = 0;
+        let latest = self.looks.ask(ctx, "watched", paths, move |paths, responder| {
+            stamps.retain(|path, _| paths.contains(path));
+            for path in paths {
+                let now = stamp(&path);
+                stamps.entry(path).or_insert([now; 2]);
+            }
+            while !responder.is_superseded() {
+                std::thread::sleep(INTERVAL);
+                let before = saved;
+                for (path, [read, seen]) in &mut stamps {
+                    let now = stamp(path);
+                    // While it is being replaced it is not there, while it is being written it grows.
+                    if now.is_some() && now == *seen && now != *read {
+                        *read = now;
+                        saved += 1;
+                    }
+                    *seen = now;
+                }
+                if saved > before {
+                    responder.publish(saved);
+                }
+            }
+        });
+        std::mem::replace(&mut self.told, latest) != latest
     }
 }

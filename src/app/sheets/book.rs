@@ -7,6 +7,8 @@ use crate::app::book::{self, CONTENTS, Pages, SCHEME, Section};
 
 /// Size of the window at first, points.
 const SIZE: [f32; 2] = [480.0, 560.0];
+/// Where the panels on the right begin, a share of the window's width: it opens beside them.
+const BEFORE_PANELS: f32 = 0.74;
 /// For how many frames a heading is brought into view: texts above it are laid out in the first.
 const SCROLL_FRAMES: u32 = 3;
 
@@ -88,12 +90,16 @@ impl Manual {
             .open(&mut is_open)
             .order(if is_covered { Order::Tooltip } else { Order::Middle })
             .default_size(SIZE)
-            .default_pos(area.right_top() + vec2(-SIZE[0] - 24.0, 48.0))
+            .default_pos(pos2(
+                area.left() + BEFORE_PANELS * area.width() - SIZE[0],
+                area.top() + 64.0,
+            ))
             .show(ctx, |ui| self.page(ui, &address));
         if let Some(address) = shown.and_then(|shown| shown.inner.flatten()) {
             self.open(address);
         }
-        if !is_open {
+        let is_left = !is_covered && ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape));
+        if !is_open || is_left {
             self.addresses.clear();
         }
     }

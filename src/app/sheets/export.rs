@@ -6,8 +6,8 @@ use crate::app::kit::tile::rgb_pixels;
 use crate::app::services::export::Ready;
 use crate::app::sheets::{answers, book, question, scrolled};
 use crate::render::looks::Compared;
-use crate::store::exchange::Prepared;
 use crate::store::exchange::report::{MaterialReport, Outcome};
+use crate::store::exchange::{self, FORMATS, Prepared};
 
 /// Points that the side of an image takes.
 const PICTURE: f32 = 176.0;
@@ -17,6 +17,8 @@ const PICTURES: [&str; 3] = ["The material", "As the file shows it", "Difference
 /// The sheet, while there is something to ask.
 #[derive(Default)]
 pub struct ExportSheet {
+    /// The file, from when it was chosen.
+    pub path: Option<PathBuf>,
     ready: Option<Ready>,
     textures: Vec<Option<[TextureHandle; 3]>>,
 }
@@ -25,6 +27,8 @@ pub struct ExportSheet {
 pub enum Answer {
     Write,
     Cancel,
+    /// In another format, to this file.
+    Other(PathBuf),
 }
 
 impl ExportSheet {
@@ -42,31 +46,49 @@ impl ExportSheet {
     }
 
     pub fn is_open(&self) -> bool {
-        self.ready.is_some()
+        self.path.is_some()
     }
 
-    /// The file, to be written; the sheet is closed.
-    pub fn take(&mut self) -> Option<Prepared> {
+    /// Shows that a file is being made; without one the sheet is closed. The file that was ready.
+    pub fn begin(&mut self, path: Option<PathBuf>) -> Option<Prepared> {
         self.textures.clear();
+        self.path = path;
         Some(self.ready.take()?.prepared)
     }
 
     /// Shows the sheet where it is open.
     pub fn show(&self, ctx: &Context) -> Option<Answer> {
-        let ready = self.ready.as_ref()?;
+        let path = self.path.as_ref()?;
         question(ctx, "export", Answer::Cancel, |ui| {
             ui.set_width(580.0);
             book::heading(ui, "Export", EXPORT);
-            let report = &ready.prepared.report;
-            ui.label(report.output.display().to_string());
-            ui.add_space(theme::GAP);
-            scrolled(ui, |ui| {
-                for (material, textures) in report.materials.iter().zip(&self.textures) {
-                    material_rows(ui, material, textures.as_ref());
-                }
+            ui.label(path.display().to_string());
+            let current = exchange::by_ending(path).map_or("", |format| format.name);
+            let mut chosen = current;
+            let formats: Vec<_> = FORMATS
+                .iter()
+                .map(|format| (format.name, format.label, format.help))
+                .collect();
+            widgets::row(ui, ["Export format", "Format", ""], |ui| {
+                widgets::choice(ui, "export format", &mut chosen, &formats)
             });
             ui.add_space(theme::GAP);
-            answers(ui, [("Write the file", Answer::Write), ("Cancel", Answer::Cancel)])
+            widgets::comes_and_goes(ui, |ui| match &self.ready {
+                None => {
+                    ui.add(Spinner::new());
+                    widgets::note(ui, "Rendering the balls, which show what is lost …");
+                }
+                Some(ready) => scrolled(ui, |ui| {
+                    for (material, textures) in ready.prepared.report.materials.iter().zip(&self.textures) {
+                        material_rows(ui, material, textures.as_ref());
+                    }
+                }),
+            });
+            ui.add_space(theme::GAP);
+            let write = self.ready.as_ref().map(|_| ("Write the file", Answer::Write));
+            let answer = answers(ui, [("Cancel", Answer::Cancel)].into_iter().chain(write));
+            let other = exchange::by_name(chosen).filter(|_| chosen != current);
+            answer.or(other.map(|format| Answer::Other(path.with_extension(format.extensions[0]))))
         })
     }
 }
@@ -114,7 +136,13 @@ fn material_rows(ui: &mut Ui, material: &MaterialReport, textures: Option<&[Text
         );
     }
     if material.carries_exact_parameters {
-        widgets::note(ui, "The exact parameters travel with it: opened here, nothing is lost.");
+        let is_whole = material.entries.iter().all(|entry| entry.outcome != Outcome::Dropped);
+        let rest = if is_whole {
+            "nothing is lost"
+        } else {
+            "only what is dropped above is lost"
+        };
+        widgets::note(ui, format!("The exact parameters travel with it: opened here, {rest}."));
     }
     ui.add_space(theme::GAP);
 }

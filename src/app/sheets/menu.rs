@@ -6,10 +6,12 @@ use crate::app::pane::Pane;
 use crate::app::services::edits::Edits;
 use crate::app::services::recent::Recent;
 use crate::app::sheets::palette::{self, Findable};
-use crate::app::sheets::{import, scrolled, workspaces};
+use crate::app::sheets::{import, question, scrolled};
+use crate::app::workspaces::{LOOK, MEASURE};
 use crate::document::{ImportLobe, MaterialSettings};
 use crate::render::EngineChoice;
 use crate::scene::Model;
+use crate::scene::path_text::file_name;
 use crate::store::examples::EXAMPLES;
 
 /// What is open over the window.
@@ -23,7 +25,6 @@ pub enum Sheet {
         /// What can be used beside commands, with what uses it.
         things: Vec<Findable>,
     },
-    Shortcuts,
     ModelFile,
     About,
     /// The account of a path.
@@ -32,23 +33,42 @@ pub enum Sheet {
     },
 }
 
+/// Groups of *View* that are menus of their own. What has a higher number is found by the palette alone.
+const SUBMENUS: [(u32, &str); 3] = [(4, "Camera"), (5, "Compare"), (6, "Pixels")];
+
+#[rustfmt::skip]
+const WORKSPACES: [(&str, &str); 2] = [
+    (MEASURE, "Effects, race, check, samples, lobe, inspector and convergence"),
+    (LOOK, "Presets, material, light and camera around a large viewport"),
+];
+
 pub fn bar(
     ui: &mut Ui,
     edits: &Edits,
     recent: &mut Recent,
     (import_lobe, engine): (ImportLobe, EngineChoice),
-    (workspaces, is_open): ((&[&str], &str), impl Fn(Pane) -> bool),
+    (workspace, is_open): (&str, impl Fn(Pane) -> bool),
     actions: &mut Vec<Action>,
 ) {
     MenuBar::new().ui(ui, |ui| {
         for &menu in Menu::ALL {
             ui.menu_button(menu.label(), |ui| {
                 ui.set_min_width(200.0);
+                let of_menu = Command::ALL.iter().filter(|command| command.menu() == menu);
+                if menu == Menu::View {
+                    for (group, label) in SUBMENUS {
+                        ui.menu_button(label, |ui| {
+                            let inside = of_menu.clone().filter(|command| command.group() == group);
+                            inside.for_each(|command| entry(ui, *command, edits, actions));
+                        });
+                    }
+                }
                 let mut group = 0;
-                for command in Command::ALL.iter().filter(|command| command.menu() == menu) {
+                for command in of_menu.filter(|command| command.group() < SUBMENUS[0].0) {
                     if command.group() != group {
                         if menu == Menu::File && group == 0 {
                             open_recent(ui, recent, actions);
+                            import_lobes(ui, import_lobe, actions);
                         }
                         ui.separator();
                         group = command.group();
@@ -58,7 +78,6 @@ pub fn bar(
                 match menu {
                     Menu::View => panes(ui, &is_open, actions),
                     Menu::Render => engines(ui, engine, actions),
-                    Menu::File => import_lobes(ui, import_lobe, actions),
                     Menu::Help => examples(ui, actions),
                     _ => {}
                 }
@@ -69,7 +88,14 @@ pub fn bar(
             if ui.button(RichText::new(text).weak()).clicked() {
                 actions.push(Action::Do(Command::Palette));
             }
-            workspaces::show(ui, workspaces, actions);
+            // From the right.
+            for (name, help) in WORKSPACES {
+                let tab = ui.selectable_label(name == workspace, name).on_hover_text(help);
+                if tab.clicked() {
+                    actions.push(Action::UseWorkspace(name));
+                }
+                tab.accessible_name(format!("Workspace {name}"));
+            }
         });
     });
 }
@@ -91,18 +117,13 @@ fn entry(ui: &mut Ui, command: Command, edits: &Edits, actions: &mut Vec<Action>
     }
 }
 
-/// A menu of the files opened and saved last; those that are not there any more are greyed.
+/// A menu of the files opened and saved last.
 fn open_recent(ui: &mut Ui, recent: &mut Recent, actions: &mut Vec<Action>) {
     ui.add_enabled_ui(!recent.paths.is_empty(), |ui| {
         ui.menu_button("Open recent", |ui| {
             ui.set_min_width(220.0);
-            let missing = recent.missing(ui.ctx());
             for path in &recent.paths {
-                let is_missing = missing.contains(path);
-                let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
-                let note = if is_missing { " (not there any more)" } else { "" };
-                let full = path.display().to_string();
-                if widgets::pressed_if(ui, !is_missing, format!("{name}{note}"), &full, &full) {
+                if widgets::pressed(ui, file_name(path), &path.display().to_string()) {
                     do_and_close(ui, actions, Action::Open(path.clone()));
                 }
             }
@@ -116,18 +137,19 @@ fn open_recent(ui: &mut Ui, recent: &mut Recent, actions: &mut Vec<Action>) {
 
 /// The panels: a tick at those that are open.
 fn panes(ui: &mut Ui, is_open: impl Fn(Pane) -> bool, actions: &mut Vec<Action>) {
-    ui.separator();
-    for pane in Pane::ALL.into_iter().filter(|pane| *pane != Pane::Viewport) {
-        let mut opens = is_open(pane);
-        if ui.checkbox(&mut opens, pane.title()).changed() {
-            let action = if opens {
-                Action::Reveal(pane)
-            } else {
-                Action::Close(pane)
-            };
-            do_and_close(ui, actions, action);
+    ui.menu_button("Panels", |ui| {
+        for pane in Pane::ALL.into_iter().filter(|pane| *pane != Pane::Viewport) {
+            let mut opens = is_open(pane);
+            if ui.checkbox(&mut opens, pane.title()).changed() {
+                let action = if opens {
+                    Action::Reveal(pane)
+                } else {
+                    Action::Close(pane)
+                };
+                do_and_close(ui, actions, action);
+            }
         }
-    }
+    });
 }
 
 /// The engines, with a tick at the one that is chosen.
@@ -154,7 +176,6 @@ fn examples(ui: &mut Ui, actions: &mut Vec<Action>) {
 }
 
 fn import_lobes(ui: &mut Ui, mut chosen: ImportLobe, actions: &mut Vec<Action>) {
-    ui.separator();
     if widgets::choice_menu(ui, "Import glTF materials as", &mut chosen, &widgets::choices()) {
         actions.push(Action::ImportAs(chosen));
     }
@@ -169,68 +190,30 @@ pub fn sheet(
     actions: &mut Vec<Action>,
 ) {
     let (document, material) = desk;
-    let mut is_done = false;
     if *sheet == Sheet::None {
         return;
     }
-    let id = Id::unique(("sheet", std::mem::discriminant(sheet)));
-    let modal = Modal::new(id).show(ctx, |ui| match sheet {
-        Sheet::None => {}
-        Sheet::Palette {
-            search,
-            selected,
-            things,
-        } => is_done = palette::show(ui, search, selected, document, (material, things), actions),
-        Sheet::ModelFile => is_done = import::show(ui, document, (model, lobe), actions),
-        Sheet::Shortcuts => shortcuts(ui),
-        Sheet::About => about(ui),
-        Sheet::Path { text } => path(ui, text),
+    let id = ("sheet", std::mem::discriminant(sheet));
+    let is_done = question(ctx, id, true, |ui| {
+        let is_done = match sheet {
+            Sheet::None => false,
+            Sheet::Palette {
+                search,
+                selected,
+                things,
+            } => palette::show(ui, search, selected, document, (material, things), actions),
+            Sheet::ModelFile => import::show(ui, document, (model, lobe), actions),
+            Sheet::About => about(ui),
+            Sheet::Path { text } => path(ui, text),
+        };
+        is_done.then_some(true)
     });
-    if is_done || modal.should_close() {
+    if is_done.is_some() {
         *sheet = Sheet::None;
     }
 }
 
-#[rustfmt::skip]
-const MOUSE: [(&str, &str); 10] = [
-    ("Drag", "Turn the camera"),
-    ("Middle drag, or ctrl and drag", "Pan"),
-    ("Wheel, or right drag", "Zoom"),
-    ("Shift and drag", "Turn the light"),
-    ("Drag a light's mark or handle", "Move or change it; Escape takes it back"),
-    ("Click", "Select the material there"),
-    ("Ctrl, shift and click", "Explain the last sample of the pixel"),
-    ("Arrows, page up and down", "Turn and zoom, with the viewport focused"),
-    ("Double-click on a label", "Reset the parameter"),
-    ("Shift and drag a number", "Change it finely"),
-];
-
-fn shortcuts(ui: &mut Ui) {
-    ui.set_width(440.0);
-    ui.heading("Keys and mouse");
-    ui.add_space(theme::GAP);
-    scrolled(ui, |ui| {
-        Grid::new("keys")
-            .num_columns(2)
-            .spacing(vec2(24.0, 5.0))
-            .show(ui, |ui| {
-                let mut all = MOUSE.map(|(how, what)| (how.to_owned(), what)).to_vec();
-                let commands = Command::ALL
-                    .iter()
-                    .map(|command| (palette::keys(ui, *command), command.label()));
-                all.extend(commands.filter(|(keys, _)| !keys.is_empty()));
-                for (how, what) in all {
-                    ui.label(RichText::new(how).strong());
-                    ui.label(what);
-                    ui.end_row();
-                }
-            });
-    });
-    ui.add_space(theme::GAP);
-    widgets::entry(ui, "Close", "");
-}
-
-fn about(ui: &mut Ui) {
+fn about(ui: &mut Ui) -> bool {
     ui.set_width(420.0);
     ui.heading(concat!("Glossmith ", env!("CARGO_PKG_VERSION")));
     ui.add_space(theme::GAP);
@@ -244,11 +227,11 @@ fn about(ui: &mut Ui) {
     );
     ui.hyperlink("https://doi.org/10.1007/978-3-031-50072-5_17");
     ui.add_space(theme::GAP);
-    widgets::entry(ui, "Close", "");
+    ui.button("Close").clicked()
 }
 
 /// Everything that made one sample of one pixel.
-fn path(ui: &mut Ui, text: &str) {
+fn path(ui: &mut Ui, text: &str) -> bool {
     ui.set_width(900.0_f32.min(0.9 * ui.ctx().content_rect().width()));
     ui.heading("Path trace of this pixel");
     ui.add_space(theme::GAP);
@@ -260,6 +243,7 @@ fn path(ui: &mut Ui, text: &str) {
         if widgets::pressed(ui, "Copy", "Copies the account as text.") {
             ui.ctx().copy_text(text.to_owned());
         }
-        widgets::entry(ui, "Close", "");
-    });
+        ui.button("Close").clicked()
+    })
+    .inner
 }

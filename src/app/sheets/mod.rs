@@ -11,7 +11,6 @@ pub mod recovery;
 pub mod status;
 pub mod turntable;
 pub mod unsaved;
-mod workspaces;
 
 use std::path::PathBuf;
 
@@ -22,7 +21,12 @@ use super::kit::{theme, widgets};
 use crate::document::Document;
 
 /// A sheet over the window, and its answer; closed without one, it is `cancelled`.
-pub fn question<A>(ctx: &Context, id: &str, cancelled: A, show: impl FnOnce(&mut Ui) -> Option<A>) -> Option<A> {
+pub fn question<A>(
+    ctx: &Context,
+    id: impl std::hash::Hash + std::fmt::Debug,
+    cancelled: A,
+    show: impl FnOnce(&mut Ui) -> Option<A>,
+) -> Option<A> {
     let modal = Modal::new(Id::unique(id)).show(ctx, show);
     if modal.should_close() {
         Some(cancelled)

@@ -9,11 +9,14 @@ use crate::store::recovery::{Recovered, Report};
 
 /// What is to be done with a leftover.
 pub enum Choice {
-    Restore,
-    Discard,
+    /// The one of this number.
+    Restore(usize),
+    Discard(usize),
+    /// Nothing until the next start.
+    Later,
 }
 
-pub fn sheet(ui: &mut Ui, leftovers: &[Leftover]) -> Option<(usize, Choice)> {
+pub fn sheet(ui: &mut Ui, leftovers: &[Leftover]) -> Option<Choice> {
     let mut chosen = None;
     ui.set_width(460.0);
     if leftovers.iter().any(|leftover| leftover.contents.is_some()) {
@@ -30,18 +33,16 @@ pub fn sheet(ui: &mut Ui, leftovers: &[Leftover]) -> Option<(usize, Choice)> {
         for (at, leftover) in leftovers.iter().enumerate() {
             ui.add_space(theme::GAP);
             ui.separator();
-            if let Some(choice) = row(ui, leftover, at == 0) {
-                chosen = Some((at, choice));
-            }
+            chosen = row(ui, leftover, at).or(chosen.take());
         }
     });
     ui.add_space(theme::GAP);
     ui.separator();
-    widgets::entry(ui, "Later", "Asks again at the next start.");
-    chosen
+    let is_later = widgets::pressed(ui, "Later", "Asks again at the next start.");
+    chosen.or(is_later.then_some(Choice::Later))
 }
 
-fn row(ui: &mut Ui, leftover: &Leftover, is_first: bool) -> Option<Choice> {
+fn row(ui: &mut Ui, leftover: &Leftover, at: usize) -> Option<Choice> {
     let mut choice = None;
     let name = match &leftover.contents {
         Some(Ok(recovered)) => {
@@ -66,16 +67,16 @@ fn row(ui: &mut Ui, leftover: &Leftover, is_first: bool) -> Option<Choice> {
             let restore = ui
                 .add_enabled(contents.is_ok(), Button::new("Restore"))
                 .accessible_name(format!("Restore {name}"));
-            if is_first && ui.memory(|memory| memory.focused().is_none()) {
+            if at == 0 && ui.memory(|memory| memory.focused().is_none()) {
                 restore.request_focus();
             }
             if restore.clicked() {
-                choice = Some(Choice::Restore);
+                choice = Some(Choice::Restore(at));
             }
         }
         let discard = ui.button("Discard").accessible_name(format!("Discard {name}"));
         if discard.on_hover_text("Removes it for good.").clicked() {
-            choice = Some(Choice::Discard);
+            choice = Some(Choice::Discard(at));
         }
     });
     choice

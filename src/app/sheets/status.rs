@@ -13,20 +13,6 @@ const LOADING_REPAINT: Duration = Duration::from_millis(200);
 /// An image below this estimated error is called clean.
 const CLEAN: f64 = 0.05;
 
-/// What the bar keeps longest where it is narrow, first.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Rank {
-    Engine,
-    Activity,
-    Samples,
-    Error,
-    Denoised,
-    Share,
-    Time,
-    Size,
-    Rate,
-}
-
 /// Space between two parts, points.
 const SPACING: f32 = 16.0;
 /// Widths are taken for multiples of this, so that parts do not come and go with each digit.
@@ -35,42 +21,8 @@ const WIDTH_STEP: f32 = 8.0;
 const SPINNER: f32 = 12.0;
 const SHARE_LENGTH: f32 = 90.0;
 
-type Show<'a> = Box<dyn FnOnce(&mut Ui) + 'a>;
-
-/// The parts of the bar from left to right, with their widths in points.
-struct Parts<'u, 'a> {
-    ui: &'u Ui,
-    parts: Vec<(Rank, f32, Show<'a>)>,
-}
-
-impl<'a> Parts<'_, 'a> {
-    fn add(&mut self, rank: Rank, width: f32, show: impl FnOnce(&mut Ui) + 'a) {
-        let width = SPACING + (width / WIDTH_STEP).ceil() * WIDTH_STEP;
-        self.parts.push((rank, width, Box::new(show)));
-    }
-
-    fn spinner(&mut self) {
-        self.add(Rank::Activity, SPINNER, |ui| {
-            ui.add(Spinner::new().size(SPINNER));
-        });
-    }
-
-    /// A text that explains itself under the pointer.
-    fn text(&mut self, rank: Rank, text: impl Into<RichText>, help: impl FnOnce(&mut Ui) + 'a) {
-        let text = text.into();
-        let layout = WidgetText::from(text.clone());
-        let extend = Some(TextWrapMode::Extend);
-        let galley = layout.into_galley(self.ui, extend, f32::INFINITY, FontSelection::Default);
-        self.add(rank, galley.size().x, move |ui| {
-            ui.label(text).on_hover_ui(help);
-        });
-    }
-
-    /// The same, explained by lines.
-    fn explained(&mut self, rank: Rank, text: impl Into<RichText>, help: Vec<String>) {
-        self.text(rank, text, |ui| lines(ui, help));
-    }
-}
+/// A text, and the lines that explain it under the pointer.
+type Told = (String, Vec<String>);
 
 fn lines(ui: &mut Ui, lines: Vec<String>) {
     for line in lines {
@@ -82,14 +34,12 @@ fn lines(ui: &mut Ui, lines: Vec<String>) {
 pub fn show(ui: &mut Ui, snapshot: &Snapshot, has_numbers: bool, actions: &mut Vec<Action>) {
     ui.horizontal_centered(|ui| {
         ui.spacing_mut().item_spacing.x = SPACING;
-        let mut parts = Parts { ui, parts: Vec::new() };
+        activity(ui, snapshot, actions);
+        let mut told = Vec::new();
         if has_numbers {
-            engine(&mut parts, snapshot);
-        }
-        activity(&mut parts, snapshot, actions);
-        if has_numbers && snapshot.progress.samples_wanted > 0 {
-            for (rank, text, help) in progress(snapshot) {
-                parts.explained(rank, text, help);
+            told.push(engine(snapshot));
+            if snapshot.progress.samples_wanted > 0 {
+                told.extend(progress(snapshot));
             }
         }
         if let Some(picture) = &snapshot.picture {
@@ -97,20 +47,25 @@ pub fn show(ui: &mut Ui, snapshot: &Snapshot, has_numbers: bool, actions: &mut V
             if picture.reduction > 1 {
                 size += &format!(" (1/{})", picture.reduction);
             }
-            parts.explained(Rank::Size, size, vec!["Size of the image shown".to_owned()]);
+            told.push((size, vec!["Size of the image shown".to_owned()]));
         }
-        let parts = parts.parts;
-        let widths = parts.iter().map(|(rank, width, _)| (*rank, *width)).collect();
-        let last = widgets::fitting(widths, ui.available_width() + SPACING);
-        for (_, _, show) in parts.into_iter().filter(|(rank, ..)| Some(*rank) <= last) {
-            show(ui);
+        let font = TextStyle::Body.resolve(ui.style());
+        for (text, help) in told {
+            let galley = ui
+                .painter()
+                .layout_no_wrap(text.clone(), font.clone(), Color32::PLACEHOLDER);
+            // What has no room is left out as a whole, and what follows it.
+            if (galley.size().x / WIDTH_STEP).ceil() * WIDTH_STEP > ui.available_width() {
+                break;
+            }
+            ui.label(text).on_hover_ui(|ui| lines(ui, help));
         }
     });
 }
 
-fn engine(parts: &mut Parts<'_, '_>, snapshot: &Snapshot) {
+fn engine(snapshot: &Snapshot) -> Told {
     let Some(engine) = &snapshot.engine else {
-        return parts.explained(Rank::Engine, RichText::new("no engine yet").weak(), Vec::new());
+        return ("no engine yet".to_owned(), Vec::new());
     };
     let mut help = vec![
         format!("Engine: {}", engine.kind.name()),
@@ -119,14 +74,14 @@ fn engine(parts: &mut Parts<'_, '_>, snapshot: &Snapshot) {
         format!("Chosen because: {}", engine.reason),
     ];
     help.retain(|line| !line.is_empty());
-    let kind = RichText::new(engine.kind.label()).strong();
-    parts.explained(Rank::Engine, kind, help);
+    (engine.kind.label().to_owned(), help)
 }
 
-fn activity<'a>(parts: &mut Parts<'_, 'a>, snapshot: &'a Snapshot, actions: &'a mut Vec<Action>) {
+fn activity(ui: &mut Ui, snapshot: &Snapshot, actions: &mut Vec<Action>) {
     let is_loading = matches!(snapshot.activity, Activity::Loading(_) | Activity::Preparing);
-    if is_loading || snapshot.activity == Activity::Starting {
-        parts.spinner();
+    let is_fallback = snapshot.activity == Activity::Rendering && snapshot.progress.is_fallback;
+    if is_loading || is_fallback || snapshot.activity == Activity::Starting {
+        ui.add(Spinner::new().size(SPINNER));
     }
     let doing = snapshot.loading.doing();
     let text = if is_loading && !doing.is_empty() {
@@ -134,32 +89,24 @@ fn activity<'a>(parts: &mut Parts<'_, 'a>, snapshot: &'a Snapshot, actions: &'a 
     } else {
         state(snapshot)
     };
-    parts.text(Rank::Activity, text, |ui| account(ui, snapshot));
+    ui.label(text).on_hover_ui(|ui| account(ui, snapshot));
     if is_loading {
-        parts.ui.ctx().request_repaint_after(LOADING_REPAINT);
-        parts.add(Rank::Engine, 86.0, |ui| {
-            // By a name, as what stands before it comes and goes.
-            let cancel = widgets::known_by(ui, "cancel loading", |ui| ui.small_button("Stop loading"));
-            let help = "Gives up what is being loaded; what is shown stays";
-            if cancel.on_hover_text(help).clicked() {
-                actions.push(Action::CancelLoading);
-            }
-        });
+        ui.ctx().request_repaint_after(LOADING_REPAINT);
+        // By a name, as what stands before it comes and goes.
+        let cancel = widgets::known_by(ui, "cancel loading", |ui| ui.small_button("Stop loading"));
+        let help = "Gives up what is being loaded; what is shown stays";
+        if cancel.on_hover_text(help).clicked() {
+            actions.push(Action::CancelLoading);
+        }
     }
-    if snapshot.activity != Activity::Rendering {
-        return;
+    if is_fallback {
+        ui.weak("compiling the kernel")
+            .on_hover_text("The CPU renders until the GPU's kernel for this scene is compiled.");
     }
-    if snapshot.progress.is_fallback {
-        parts.spinner();
-        let help = "The CPU renders until the GPU's kernel for this scene is compiled.";
-        let text = RichText::new("compiling the kernel").weak();
-        parts.explained(Rank::Activity, text, vec![help.to_owned()]);
-    }
-    let share = share_done(snapshot) as f32;
-    parts.add(Rank::Share, SHARE_LENGTH, move |ui| {
-        let bar = ProgressBar::new(share).desired_width(SHARE_LENGTH);
+    if snapshot.activity == Activity::Rendering {
+        let bar = ProgressBar::new(share_done(snapshot) as f32).desired_width(SHARE_LENGTH);
         ui.add(bar.desired_height(6.0));
-    });
+    }
 }
 
 fn share_done(snapshot: &Snapshot) -> f64 {
@@ -205,27 +152,27 @@ fn account(ui: &mut Ui, snapshot: &Snapshot) {
 }
 
 /// How far the image has come, in numbers.
-fn progress(snapshot: &Snapshot) -> Vec<(Rank, String, Vec<String>)> {
+fn progress(snapshot: &Snapshot) -> Vec<Told> {
     let progress = &snapshot.progress;
     let help = |text: &str| vec![text.to_owned()];
     let about_samples = help("Samples per pixel: average so far / target");
-    let mut parts = vec![(Rank::Samples, samples(progress), about_samples)];
+    let mut parts = vec![(samples(progress), about_samples)];
     if let Some(noise) = progress.noise {
         let mut help = help("Estimated noise: RMS pixel error / mean luminance");
         help.push(band(noise.low, noise.high));
         let text = format!("error {}", raw_error(snapshot, noise.relative));
-        parts.push((Rank::Error, text, help));
+        parts.push((text, help));
     }
     if let Some(estimate) = snapshot.denoised {
         let mut help = help("Estimated error of the denoised image, bias included: RMS / mean luminance");
         help.push(band(estimate.low, estimate.high));
-        parts.push((Rank::Denoised, format!("denoised {}", error(estimate.value)), help));
+        parts.push((format!("denoised {}", error(estimate.value)), help));
     }
     let time = format!("{:.1} s", progress.render_seconds);
-    parts.push((Rank::Time, time, help("Render time of this image")));
+    parts.push((time, help("Render time of this image")));
     let rate = format!("{} samples/s", short_number(snapshot.samples_per_second));
     let about_rate = help("Pixel samples per second, over this whole image");
-    parts.push((Rank::Rate, rate, about_rate));
+    parts.push((rate, about_rate));
     parts
 }
 

@@ -111,8 +111,8 @@ impl TurntableSheet {
         f64::from(self.frames) * samples * pixels[0] * pixels[1] / progress.samples_per_second
     }
 
-    /// The settings; true to begin. `progress`: of the render at present.
-    pub fn settings(&mut self, ui: &mut Ui, progress: &Progress) -> bool {
+    /// The settings; true to begin, false to leave it. `progress`: of the render at present.
+    pub fn settings(&mut self, ui: &mut Ui, progress: &Progress) -> Option<bool> {
         let help = "What turns, anticlockwise seen from above.";
         widgets::choice_row(ui, ["Turntable turn", "Turn", help], &mut self.turn);
         let [width, height] = &mut self.size;
@@ -164,8 +164,7 @@ impl TurntableSheet {
         let is_usable = !self.output.trim().is_empty();
         let buttons = |ui: &mut Ui| {
             let begins = widgets::pressed_if(ui, is_usable, "Add to the queue", "", "");
-            widgets::entry(ui, "Close", "");
-            begins
+            begins.then_some(true).or(ui.button("Close").clicked().then_some(false))
         };
         ui.horizontal(buttons).inner
     }

@@ -7,9 +7,10 @@ use super::*;
 use crate::analysis::difference::diverging;
 use crate::app::kit::drag::steps;
 use crate::app::kit::widgets::NumberStyle;
+use crate::app::pane::Pane;
 use crate::app::services::compare::{BEFORE, Rival};
+use crate::app::services::viewing::Pick;
 use crate::optics::lobe::Lobe;
-use crate::store::PRESETS;
 
 /// Half the width in which the divider can be taken hold of, points.
 const GRIP: f32 = 5.0;
@@ -203,11 +204,10 @@ fn rivals(ui: &mut Ui, desk: &mut Desk) {
             let rival = Rival::Materials(pin.name.clone(), pin.document.materials.clone());
             entry(ui, &pin.name, rival);
         }
-        widgets::note(ui, "Presets");
-        let own = desk.shared.library.entries.iter();
-        let own = own.filter_map(|own| own.material.as_ref().ok());
-        for preset in own.chain(PRESETS.iter()) {
-            entry(ui, &preset.name, Rival::Material(Box::new(preset.clone())));
+        let help = "The next click on a preset says what B is.";
+        if widgets::entry(ui, "Choose a preset…", help) {
+            desk.shared.viewing.picks = Some(Pick::Rival);
+            desk.actions.push(Action::Reveal(Pane::Presets));
         }
     });
     let response = shown.response.accessible_name("Compare with");
@@ -242,6 +242,7 @@ fn views(ui: &mut Ui, desk: &mut Desk) {
             let response = response.accessible_name("Difference scale");
             response.on_hover_text("The difference of radiance that has the full colour");
             let mut is_automatic = compare.scale.is_none();
+            ui.weak("full colour");
             if ui.checkbox(&mut is_automatic, "Auto").changed() {
                 compare.scale = (!is_automatic).then_some(scale);
             }

@@ -1,9 +1,8 @@
 //! A way to the denoiser where it is missing: why the image is noisy at first, and a button that fetches it.
 
 use super::*;
-use crate::app::services::beside::started;
+use crate::app::services::beside::Beside;
 use crate::document::Denoise;
-use crate::render::background::Background;
 use crate::render::denoise::Library;
 use crate::render::denoise::fetch::{DOWNLOAD, can_fetch, fetch};
 
@@ -15,7 +14,8 @@ const HEIGHT: f32 = 76.0;
 /// Fetches the denoiser beside the window.
 #[derive(Default)]
 pub struct DenoiserOffer {
-    worker: Option<Background<(), Result<(), String>>>,
+    /// The share that is there.
+    worker: Beside<(), Result<f32, String>>,
     is_declined: bool,
     /// The outcome was taken note of.
     is_taken: bool,
@@ -27,13 +27,13 @@ impl DenoiserOffer {
         if self.is_declined
             || !desk.shared.offers_downloads
             || !can_fetch()
-            || (self.worker.is_none() && !Library::is_missing())
+            || (!self.worker.is_busy() && self.worker.latest().is_none() && !Library::is_missing())
         {
             return;
         }
-        let is_busy = self.worker.as_ref().is_some_and(Background::is_busy);
-        let outcome = self.worker.as_ref().and_then(Background::latest).filter(|_| !is_busy);
-        if let Some(Ok(())) = outcome {
+        let is_busy = self.worker.is_busy();
+        let outcome = self.worker.latest().filter(|_| !is_busy);
+        if let Some(Ok(_)) = outcome {
             if !std::mem::replace(&mut self.is_taken, true) {
                 desk.document.view.denoise = Denoise::Auto;
                 desk.edits.note("Denoise", "view.denoise");
@@ -49,7 +49,10 @@ impl DenoiserOffer {
             ui.horizontal(|ui| self.buttons(ui, is_busy));
             let text = match outcome {
                 Some(Err(why)) => why,
-                _ if is_busy => "Downloading; you can go on meanwhile.".to_owned(),
+                _ if is_busy => {
+                    let share = self.worker.latest().and_then(Result::ok).unwrap_or_default();
+                    format!("Downloading, {:.0} %; you can go on meanwhile.", 100.0 * share)
+                }
                 _ => "Images are noisy at first: the denoiser is not installed.".to_owned(),
             };
             ui.add(Label::new(text).wrap());
@@ -60,20 +63,19 @@ impl DenoiserOffer {
         let label = format!("Get the denoiser ({DOWNLOAD})");
         let help = "Downloads Open Image Denoise, by the Python package pyoidn, for you alone.";
         let gets = widgets::pressed_if(ui, !is_busy, label, help, "");
-        if is_busy {
-            ui.add(Spinner::new().size(12.0));
+        let label = if is_busy { "Stop" } else { "No" };
+        if ui.button(label).clicked() {
+            self.is_declined = !is_busy;
+            self.worker = Beside::default();
         }
-        self.is_declined |= widgets::pressed_if(ui, !is_busy, "No", "", "");
-        if !gets {
-            return;
-        }
-        let worker = started(&mut self.worker, ui.ctx(), |repaint| {
-            Background::spawn("denoiser", repaint, |(), responder| {
-                responder.publish(fetch());
-            })
-        });
-        if let Some(worker) = worker {
-            worker.ask(());
+        if gets {
+            self.worker.ask_again(ui.ctx(), "denoiser", (), |(), responder| {
+                let done = fetch(&|share| {
+                    responder.publish(Ok(share));
+                    !responder.is_superseded()
+                });
+                responder.publish(done.map(|()| 1.0));
+            });
         }
     }
 }

@@ -2,11 +2,11 @@
 
 use super::*;
 use crate::app::actions::do_and_close;
+use crate::app::desk::lights;
 use crate::app::services::shelves::environment_label;
 use crate::document::{Denoise, LightPaths};
 use crate::render::shown::Shown;
 use crate::scene::ModelSource;
-use crate::scene::environment::BUILT_IN;
 
 /// What stands in the bar beside model and environment: what it keeps longest when it gets narrow first.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -120,7 +120,7 @@ fn models(ui: &mut Ui, desk: &mut Desk) {
 fn environments(ui: &mut Ui, desk: &mut Desk) {
     let current = &desk.document.lighting.environment;
     let name = ("Environment", environment_label(current));
-    let entries = BUILT_IN.iter().map(|built_in| {
+    let entries = lights().map(|built_in| {
         let action = Action::UseEnvironment(built_in.source.clone());
         (built_in.label, built_in.help, *current == built_in.source, action)
     });
@@ -200,7 +200,7 @@ fn show_seen(desk: &mut Desk, (shown, paths): Seen) {
     }
     if desk.document.render.light_paths != paths {
         desk.document.render.light_paths = paths;
-        desk.edits.note("Light shown", "");
+        desk.edits.did("Light shown");
     }
 }
 

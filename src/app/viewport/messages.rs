@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::app::services::messages::Offer;
+use crate::render::shown::Shown;
 use crate::render::worker::Level;
 use crate::scene::ModelSource;
 
@@ -71,7 +72,8 @@ pub fn show(ui: &mut Ui, area: Rect, desk: &mut Desk) {
 /// A way to the user's own model, as long as one of the program's is shown.
 pub fn open_model(ui: &mut Ui, area: Rect, desk: &mut Desk) {
     let is_own = matches!(desk.document.model, ModelSource::File(_));
-    if is_own || desk.shared.compare.is_on || area.width() < 320.0 {
+    let has_legend = desk.shared.viewing.shown != Shown::Picture;
+    if is_own || has_legend || desk.shared.compare.is_on || area.width() < 320.0 {
         return;
     }
     let up = LOADING_MARGIN + theme::ROW_HEIGHT;

@@ -372,7 +372,6 @@ impl Viewport {
         if picking::is_picked(&hit, modifiers.command, desk) {
             return;
         }
-        desk.shared.view_angle_deg = hit.view_angle_deg;
         picking::choose(&hit, modifiers.shift, desk);
     }
 }

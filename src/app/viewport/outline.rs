@@ -4,14 +4,14 @@ use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 use std::sync::Arc;
 
 use super::*;
-use crate::app::services::beside::started;
+use crate::app::services::beside::Beside;
 use crate::app::services::selection::Thing;
-use crate::render::seen_map::{self, SeenMap, SeenMaps};
+use crate::render::seen_map::{self, SeenMap};
 
 /// The line as it is shown.
 #[derive(Default)]
 pub struct Outline {
-    maps: Option<SeenMaps>,
+    maps: Beside<(Arc<Job>, [u32; 2]), Arc<SeenMap>>,
     /// What the latest map was asked of, and in what size.
     asked: Option<(Arc<Job>, [u32; 2])>,
     shown: ShownTexture,
@@ -25,18 +25,16 @@ impl Outline {
         if chosen.is_empty() && lit.is_none() {
             return;
         }
-        let Some(maps) = started(&mut self.maps, ui.ctx(), seen_map::spawn) else {
-            return;
-        };
         // In the screen's pixels, at any size of the image.
         let pixels = place.size() * ui.ctx().pixels_per_point();
         let size = [pixels.x, pixels.y].map(|side| (side.round() as u32).max(1));
         // Nothing of another view, as while the camera turns.
-        let map = maps.latest().filter(|map| map.is_of(job));
+        let map = self.maps.latest().filter(|map| map.is_of(job));
         let is_asked =
             |(of, in_size): &(Arc<Job>, [u32; 2])| *in_size == size && (map.is_some() || Arc::ptr_eq(of, job));
         if !self.asked.as_ref().is_some_and(is_asked) {
-            maps.ask((job.clone(), size));
+            self.maps
+                .ask_again(ui.ctx(), "outlines", (job.clone(), size), seen_map::answer);
             self.asked = Some((job.clone(), size));
         }
         let Some(map) = map else { return };
@@ -53,10 +51,10 @@ impl Outline {
     }
 }
 
-/// What is outlined because the user chose it, where that is seen: objects, else slots where there is more than one.
+/// What is outlined because the user chose it: objects, else slots where there is more than one.
 fn chosen(desk: &Desk) -> Vec<Thing> {
     let selection = &desk.shared.selection;
-    if !selection.is_made || (!selection.is_shown && !selection.was_shown) {
+    if !selection.is_made {
         return Vec::new();
     }
     if !selection.objects.is_empty() {

@@ -23,6 +23,18 @@ pub fn hover(ui: &Ui, response: &Response, place: Rect, scene: &Scene, desk: &mu
     if let Some(thing) = thing {
         desk.shared.selection.hovered = Some(thing);
     }
+    if let Some((slot, at)) = seen.and_then(|seen| seen.slot).zip(pointer).filter(|_| is_dropping) {
+        let name = format!("Drop on {}", desk.document.material(slot).name);
+        let below = at + vec2(70.0, 24.0);
+        let colors = [Color32::from_black_alpha(170), Color32::WHITE];
+        plate(ui.painter(), Align2::LEFT_TOP, below, &name, colors);
+        let told = ui.interact(
+            Rect::from_min_size(below, Vec2::ZERO),
+            Id::unique("drop target"),
+            Sense::hover(),
+        );
+        widgets::describe(&told, Role::Label, &name);
+    }
     if let Some(material) = response.dnd_release_payload::<MaterialSettings>()
         && let Some(slot) = seen.and_then(|seen| seen.slot)
     {
@@ -36,15 +48,16 @@ pub fn is_picked(seen: &SeenSurface, is_focus: bool, desk: &mut Desk) -> bool {
     match focus.or(desk.shared.viewing.picks) {
         Some(Pick::Focus) if desk.document.camera.aperture > 0.0 => {
             desk.document.camera.focus_distance = Some(seen.depth);
-            desk.edits.note("Focus", "");
+            desk.edits.did("Focus");
         }
+        Some(Pick::Angle) => desk.shared.view_angle_deg = seen.view_angle_deg,
         Some(Pick::Highlight(number)) => {
             let Some(light) = desk.document.lighting.area_lights.get_mut(number) else {
                 desk.shared.viewing.picks = None;
                 return false;
             };
             light.put_highlight(seen.place, seen.mirrored);
-            desk.edits.note("Place highlight", "");
+            desk.edits.did("Place highlight");
         }
         _ => return false,
     }

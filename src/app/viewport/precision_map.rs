@@ -5,9 +5,9 @@ use std::sync::Arc;
 use super::header::in_bar;
 use super::*;
 use crate::app::kit::widgets::rgb;
-use crate::app::services::beside::started;
+use crate::app::services::beside::Beside;
 use crate::job::precision::{Fault, PrecisionMap};
-use crate::render::precision_maps::{self, PrecisionMaps};
+use crate::render::precision_maps;
 
 /// Height of the legend, and its distance from the viewport's edges, points.
 const HEIGHT: f32 = 26.0;
@@ -18,7 +18,7 @@ const SQUARE: f32 = 10.0;
 /// The map as far as it has come.
 #[derive(Default)]
 pub struct PrecisionView {
-    maps: Option<PrecisionMaps>,
+    maps: Beside<Arc<Job>, Arc<PrecisionMap>>,
     /// What the latest map was asked of.
     asked: Option<Arc<Job>>,
     /// What the texture shows; kept so that no other map has its address.
@@ -29,14 +29,12 @@ pub struct PrecisionView {
 impl PrecisionView {
     /// Paints the map of a job over `place` once it is there, and the legend into a corner of `area`.
     pub fn show(&mut self, ui: &mut Ui, area: Rect, place: Rect, job: &Arc<Job>) {
-        let Some(maps) = started(&mut self.maps, ui.ctx(), precision_maps::spawn) else {
-            return;
-        };
         if !self.asked.as_ref().is_some_and(|asked| Arc::ptr_eq(asked, job)) {
-            maps.ask(job.clone());
+            self.maps
+                .ask_again(ui.ctx(), "precision", job.clone(), precision_maps::answer);
             self.asked = Some(job.clone());
         }
-        self.map = maps.latest();
+        self.map = self.maps.latest();
         if let Some(map) = &self.map {
             let key = [u64::MAX, Arc::as_ptr(map) as u64];
             self.shown.upload(ui, key, || {
@@ -45,7 +43,7 @@ impl PrecisionView {
             });
             self.shown.show(ui, place, place);
         }
-        legend(ui, area, self.map.as_deref(), maps.is_busy());
+        legend(ui, area, self.map.as_deref(), self.maps.is_busy());
     }
 }
 

@@ -72,7 +72,7 @@ impl RegionTool {
             self.from = None;
             if is_large {
                 desk.document.render.region = Some(region_of(drawn, place));
-                desk.edits.note("Render region", "");
+                desk.edits.did("Render region");
                 self.is_armed = false;
             }
         }

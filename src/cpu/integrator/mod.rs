@@ -31,7 +31,7 @@ use crate::scene::environment::{Distribution, Environment};
 use crate::scene::light::Lights;
 use crate::scene::medium::NO_MEDIUM;
 use crate::scene::surface::{Hits, SurfacePoint, surfaces_at};
-use crate::scene::texture::{Textures, textured_materials};
+use crate::scene::texture::{Textures, textured_material};
 use crate::scene::{Geometry, PACKET};
 pub use catcher::CATCHER_DIMENSION;
 use catcher_hit::CatcherHit;
@@ -258,7 +258,7 @@ impl<'a, T: Single> Integrator<'a, T> {
                 let (textures, tables) = (self.textures, self.tables);
                 Cow::Owned(out_of_line!(
                     T,
-                    textured_materials(textures, tables, materials, &point.uvs, point.vertex_color)
+                    textured_material(textures, tables, materials.0, &point.uvs, point.vertex_color)
                 ))
             } else {
                 Cow::Borrowed(materials.0)

@@ -11,7 +11,7 @@ use crate::optics::fresnel::Fresnel;
 use crate::optics::layer::material_is_mirror;
 use crate::optics::lobe::Lobe;
 use crate::optics::material::{
-    COAT_ABSORBS, COAT_IS_GGX, COMPENSATES, HAS_BOX, Material, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY,
+    COAT_ABSORBS, COAT_IS_GGX, COMPENSATES, FILM_BANDS, HAS_BOX, Material, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY,
 };
 use crate::optics::vector::Vec3;
 use crate::scene::texture::TextureTarget as On;
@@ -198,6 +198,9 @@ effects! {
     ThinFilm "Thin film" "Interference in a film over the surface that reflects: soap, oil, tempered steel."
         AnyMaterial(|m| m.has_film == 1, "has a thin film"),
         EachMaterial(|material| material.film_weight = 0.0);
+    FilmBands "Film bands" "Thin films of more than three wavelengths, whose fine fringes a band of wavelengths blurs."
+        AnyMaterial(|m| m.has_flag(FILM_BANDS), "has a film thicker than three wavelengths"),
+        EachMaterial(|material| material.film_bands = false);
     Transmission "Refraction" "Light that passes through surfaces and is refracted there."
         AnyMaterial(Material::transmits, "transmits light"),
         EachMaterial(|material| material.transmission_weight = 0.0);
@@ -211,25 +214,22 @@ effects! {
         });
     ColorTexture "Colour textures" "Base colours from textures or vertex colours."
         AnyMaterial(
-            |m| m.has_texture(&[On::BaseColor]) || m.has_flag(VERTEX_BASE),
+            |m| m.has_texture(On::OF_COLOR) || m.has_flag(VERTEX_BASE),
             "takes its colour from a texture or from its vertices",
         ),
-        Textures(&[On::BaseColor]);
-    RoughnessTexture "Roughness textures" "Roughness and metalness from textures."
-        AnyMaterial(
-            |m| m.has_texture(&[On::Roughness, On::Metalness]),
-            "takes its roughness from a texture",
-        ),
-        Textures(&[On::Roughness]);
+        Textures(On::OF_COLOR);
+    RoughnessTexture "Roughness textures" "Roughness, metalness and weights of reflection and refraction from textures."
+        AnyMaterial(|m| m.has_texture(On::OF_ROUGHNESS), "takes its roughness from a texture"),
+        Textures(On::OF_ROUGHNESS);
     RoughTables "Energy-compensation tables" "What the base is left with where a texture changes the roughness, or the surface is metal in part."
         AnyMaterial(|m| m.holds_integrals(), "is metal in part, or its roughness changes over a base"),
         Never;
     NormalMap "Normal maps" "Shading normals from normal maps."
-        AnyMaterial(|m| m.has_texture(&[On::Normal]), "has a normal map"),
-        Textures(&[On::Normal]);
+        AnyMaterial(|m| m.has_texture(On::OF_NORMAL), "has a normal map"),
+        Textures(On::OF_NORMAL);
     EmissionTexture "Emission textures" "Emission from textures."
-        AnyMaterial(|m| m.has_texture(&[On::Emission]), "takes its emission from a texture"),
-        Textures(&[On::Emission]);
+        AnyMaterial(|m| m.has_texture(On::OF_EMISSION), "takes its emission from a texture"),
+        Textures(On::OF_EMISSION);
     VertexColors "Light and opacity of vertices" "Emission and opacity that change from vertex to vertex."
         AnyMaterial(
             |m| m.has_flag(VERTEX_EMISSION | VERTEX_OPACITY),
@@ -240,8 +240,8 @@ effects! {
         AnyMaterial(|m| m.has_texture(On::OF_COAT), "has a texture of its coat"),
         Textures(On::OF_COAT);
     CoatNormalMap "Coat normal maps" "Normals of coats bent by a texture of their own."
-        AnyMaterial(|m| m.has_texture(&[On::CoatNormal]), "bends the normals of its coat"),
-        Textures(&[On::CoatNormal]);
+        AnyMaterial(|m| m.has_texture(On::OF_COAT_NORMAL), "bends the normals of its coat"),
+        Textures(On::OF_COAT_NORMAL);
     FilmTexture "Thin film textures" "Weights and thicknesses of thin films from textures."
         AnyMaterial(|m| m.has_texture(On::OF_FILM), "takes its thin film from a texture"),
         Textures(On::OF_FILM);

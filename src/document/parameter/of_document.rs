@@ -22,8 +22,8 @@ pub static SETTINGS: LazyLock<Vec<Parameter<Document>>> = LazyLock::new(|| {
             .named("Environment strength").flag("environment-strength").bar(0.0, 4.0);
         "lighting.background_blur" Lighting "Blur" "Blurs the environment where the camera sees it, over this angle; light and reflections stay sharp." field(lighting.background_blur_deg, single(range::BACKGROUND_BLUR_DEG, "°"))
             .named("Background blur").group("Background").flag("background-blur").bar(0.0, 45.0).decimals(1).applies(|document| document.lighting.background == Background::Environment);
-        "scene.unit" Display "Scene unit" "Metres per scene unit. Used only to convert the power of lights." field(unit_m, real(range::UNIT_M, "m"))
-            .group("Area lights").flag("scene-unit").applies(|document| !document.lighting.area_lights.is_empty());
+        "scene.unit" Display "Scene unit" "Metres per scene unit: for the power of lights, and for the f-number." field(unit_m, real(range::UNIT_M, "m"))
+            .group("Area lights").flag("scene-unit");
         "lighting.light_groups" Sampling "Separate by group" "Sums the light of each group apart: the mix changes without rendering again, and .exr images get a layer of each group." toggle(lighting.light_groups)
             .named("Light groups").group("Light groups").flag("light-groups");
         "scene.ground" Geometry "Ground" "A surface under the model that catches its shadow." toggle(ground)

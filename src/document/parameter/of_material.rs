@@ -26,6 +26,7 @@ pub static PARAMETERS: LazyLock<Vec<Parameter>> = LazyLock::new(|| {
         "base.metalness" "Metalness" "0: a dielectric, its reflection over a diffuse base. 1: a metal, no base, the reflection coloured." share(metalness);
         "specular.weight" "Weight" "How much of the reflection is kept; at 0 only the base is left." share(specular_weight)
             .applies(|_| true);
+        "specular.weight_texture" "Weight texture" "Multiplies the weight by a texture, at every angle." toggle(textures[On::Specular]);
         "specular.weight_in_index" "Weight by index" "The weight scales a dielectric's reflectance head-on, through the index, as in OpenPBR; off, at every angle, as in glTF." toggle(specular_in_index)
             .applies(may_weigh_index);
         "specular.on_metal" "Metals too" "Weight and tint are a metal's too; off, they are the dielectric's alone, as in glTF." toggle(specular_on_metal)
@@ -92,8 +93,10 @@ pub static PARAMETERS: LazyLock<Vec<Parameter>> = LazyLock::new(|| {
         "thin_film.thickness_texture" "Thickness texture" "Multiplies the thickness by a texture." toggle(textures[On::FilmThickness]);
         "thin_film.ior" "Index of refraction" "How strongly the film reflects: soap 1.33, oil 1.47, oxide of steel 2.4; at the base's own there is none to see." field(film_ior, single(1.0..=3.0, ""))
             .symbol("n").bar(1.0, 3.0);
+        "thin_film.bands" "Bands" "Blurs the fine fringes of films thicker than three wavelengths, as a band of wavelengths does. Off, each channel is one wavelength." toggle(film_bands);
         "transmission.weight" "Weight" "How much of the base is clear instead of diffuse: glass, water, amber. The surface must be closed." share(transmission_weight)
             .applies(|material| material.metalness < 1.0);
+        "transmission.weight_texture" "Weight texture" "Multiplies the weight by a texture." toggle(textures[On::Transmission]);
         "transmission.color" "Colour" "Colours what is seen through: at each passage through the surface or, where there is a depth, on the way inside." color(transmission_color);
         "transmission.depth" "Depth" "Distance at which white light reaches this colour, in bounding radii of the model. 0 tints the surface instead." field(transmission_depth, single(0.0..=1000.0, ""))
             .bar(0.0, 2.0);

@@ -4,7 +4,6 @@ mod canvas;
 mod cube;
 mod error;
 mod image;
-mod luminance_chroma;
 mod open_exr;
 mod radiance_hdr;
 

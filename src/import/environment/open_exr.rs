@@ -10,14 +10,13 @@ use exr::block::reader::{ChunksReader, Reader};
 use exr::compression::Compression;
 use exr::error::Error as ExrError;
 use exr::math::Vec2;
+use exr::meta::MetaData;
 use exr::meta::attribute::{EnvironmentMap, SampleType};
 use exr::meta::header::Header;
-use exr::meta::{BlockDescription, MetaData};
 use exr::prelude::f16;
 
 use super::canvas::{Canvas, Picture, Source};
 use super::error::EnvironmentError;
-use super::luminance_chroma;
 use crate::limits;
 use crate::panics::contained;
 use crate::parallel;
@@ -52,13 +51,7 @@ fn read_guarded(source: Source<'_>) -> Result<Picture, EnvironmentError> {
     let file_bytes = source.io(file.metadata())?.len();
     check_preamble(source, &mut file)?;
     source.io(file.rewind())?;
-    let reader = match Reader::read_from_buffered(BufReader::new(file), false) {
-        Err(ExrError::NotSupported(what)) if what.contains("subsampling") => return luminance_chroma::read(source),
-        result => result.map_err(|error| exr_error(source, error))?,
-    };
-    if has_fine_chroma(reader.headers()) {
-        return luminance_chroma::read(source);
-    }
+    let reader = Reader::read_from_buffered(BufReader::new(file), false).map_err(|error| exr_error(source, error))?;
     let layers = reader.headers().len();
     let layer = choose_layer(source, reader.headers())?;
     let header = reader.headers()[layer.index].clone();
@@ -109,7 +102,7 @@ fn check_preamble(source: Source<'_>, file: &mut File) -> Result<(), Environment
 
 /// An empty image of the display window, and the position of the first stored pixel in it: negative for pixels outside the
 /// window.
-pub(super) fn window(source: Source<'_>, header: &Header) -> Result<(Canvas, [i64; 2]), EnvironmentError> {
+fn window(source: Source<'_>, header: &Header) -> Result<(Canvas, [i64; 2]), EnvironmentError> {
     let display = header.shared_attributes.display_window;
     let canvas = Canvas::new(source, display.size.width() as u64, display.size.height() as u64)?;
     let stored = header.layer_size;
@@ -120,7 +113,7 @@ pub(super) fn window(source: Source<'_>, header: &Header) -> Result<(Canvas, [i6
 }
 
 /// Converts the crate's error.
-pub(super) fn exr_error(source: Source<'_>, error: ExrError) -> EnvironmentError {
+fn exr_error(source: Source<'_>, error: ExrError) -> EnvironmentError {
     match error {
         ExrError::Io(error) => source.unreadable(error),
         ExrError::NotSupported(feature) => source.unsupported(
@@ -132,16 +125,6 @@ pub(super) fn exr_error(source: Source<'_>, error: ExrError) -> EnvironmentError
         }
         error => source.damaged(error),
     }
-}
-
-/// Whether a file of one part holds luminance and chroma of the same size, line by line.
-fn has_fine_chroma(headers: &[Header]) -> bool {
-    let [header] = headers else { return false };
-    let has = |name: &str| {
-        let mut channels = header.channels.list.iter();
-        channels.any(|channel| channel.name.to_string() == name)
-    };
-    header.blocks == BlockDescription::ScanLines && ["Y", "RY", "BY"].into_iter().all(has) && !has("R")
 }
 
 /// The first layer with red, green and blue, else the first with luminance. In one layer the channels may have a prefix
@@ -165,9 +148,11 @@ fn choose_layer(source: Source<'_>, headers: &[Header]) -> Result<Layer, Environ
             Some(Layer { index, components })
         })
     };
-    // Some programs write the names in lower case.
+    // Some programs write the names in lower case. A luminance with chroma is no grey.
+    let has_chroma = names.iter().flatten().any(|name| name == "RY");
     let named = [&["R", "G", "B"][..], &["r", "g", "b"], &["Y"]];
-    named.into_iter().find_map(find).ok_or_else(|| {
+    let known = &named[..if has_chroma { 2 } else { 3 }];
+    known.iter().find_map(|wanted| find(wanted)).ok_or_else(|| {
         let found = format!("only the channels {}", names.concat().join(", "));
         source.unsupported(found, "save it with channels R, G and B, or Y")
     })
@@ -243,7 +228,7 @@ fn write_line(line: &LineRef<'_>, sample_type: SampleType, shown: &[bool; 3], of
 
 /// A sample of a decompressed block.
 #[inline]
-pub(super) fn number(sample_type: SampleType, bytes: &[u8]) -> f32 {
+fn number(sample_type: SampleType, bytes: &[u8]) -> f32 {
     match sample_type {
         SampleType::F16 => f16::from_bits(bytemuck::pod_read_unaligned(bytes)).to_f32(),
         SampleType::F32 => bytemuck::pod_read_unaligned(bytes),

@@ -238,6 +238,7 @@ impl<'a, 'b> Painter<'a, 'b> {
         let is_shiny = self.material.shader_type == ShaderType::FbxPhong && reflected != DVec3::ZERO;
         slot.set("specular.roughness", alpha.sqrt());
         slot.set("specular.weight", f32::from(u8::from(is_shiny)));
+        self.parts.retain(|(target, ..)| *target != TextureTarget::Specular);
         let [color, factor] = [&fbx.transparency_color, &fbx.transparency_factor];
         let opacity = self.material.element.props.find_prop("Opacity");
         let opacity = opacity.map(|opacity| opacity.value_vec4.x).unwrap_or_else(|| {

@@ -18,7 +18,7 @@ pub use self::material::FBX_PARAMETERS;
 
 use self::material::{Painted, Painter};
 use self::polygons::{Broken, Look, Polygons};
-use crate::assembly::{Assembly, MAX_REPEATED_VERTICES, UsedMesh};
+use crate::assembly::{Assembly, camera_at, light_at};
 use crate::files::{Files, Import};
 use crate::limits::LIMIT_VARIABLE;
 use crate::maps::Maps;
@@ -136,6 +136,7 @@ pub(super) fn load(path: &Path, files: &Files, bytes: &[u8], options: &ModelOpti
     let mut reader = Reader {
         scene,
         loading,
+        path,
         stem: &stem,
         maps: Maps::new(files, options),
         slot_of: HashMap::new(),
@@ -155,6 +156,7 @@ pub(super) fn load(path: &Path, files: &Files, bytes: &[u8], options: &ModelOpti
 struct Reader<'a> {
     scene: &'a ufbx::Scene,
     loading: &'a Loading,
+    path: &'a Path,
     stem: &'a str,
     maps: Maps<'a>,
     /// Slot of a material by its number; none for faces without one.
@@ -165,52 +167,24 @@ struct Reader<'a> {
 
 impl Reader<'_> {
     fn model(mut self) -> Result<Model, ModelError> {
-        let scene = self.scene;
-        let mut assembly = Assembly::default();
-        let mut uses: HashMap<u32, usize> = HashMap::new();
+        let (scene, loading) = (self.scene, self.loading);
         let nodes = scene.nodes.as_ref();
         let shown: Vec<bool> = nodes.iter().map(|node| self.is_shown(node)).collect();
-        let mut repeated: HashMap<u32, UsedMesh> = HashMap::new();
         let with_mesh = || nodes.iter().zip(&shown).filter(|(_, shown)| **shown);
         let with_mesh = || with_mesh().filter_map(|(node, _)| Some((node, node.mesh.as_deref()?)));
+        let keys = with_mesh().map(|(node, mesh)| use_of(node, mesh));
+        let mut assembly = Assembly::new(self.path, loading, keys);
         for (node, mesh) in with_mesh() {
-            *uses.entry(use_of(node, mesh)).or_default() += 1;
-        }
-        let mut left_out = 0;
-        for (place, (node, mesh)) in with_mesh().enumerate() {
-            self.loading
-                .step(format!("mesh {} of {}", place + 1, scene.nodes.count))?;
-            let key = use_of(node, mesh);
-            let kept = repeated.remove(&key);
-            let is_first = kept.is_none();
-            let used = kept.unwrap_or_else(|| UsedMesh::Own(self.mesh(node, mesh)));
-            let vertices = assembly.mesh(&used).positions.len();
-            if !is_first && assembly.vertices + vertices > MAX_REPEATED_VERTICES {
-                left_out += 1;
-                repeated.insert(key, used);
-                continue;
-            }
-            assembly.vertices += vertices;
-            let uses_left = uses.get_mut(&key).map_or(0, |uses| {
-                *uses -= 1;
-                *uses
-            });
             let world_from_mesh = match mesh.skinned_is_local {
                 true => matrix(&node.geometry_to_world),
                 // Its bones have placed it.
                 false => DMat4::IDENTITY,
             };
-            assembly.object(node.element.element_id as usize, node.element.name.to_string());
-            if let Some(used) = assembly.add(used, world_from_mesh, uses_left) {
-                repeated.insert(key, used);
-            }
+            let named = (node.element.element_id as usize, &*node.element.name);
+            assembly.place(use_of(node, mesh), named, world_from_mesh, || self.mesh(node, mesh))?;
         }
-        self.report
-            .count(Fate::Used, "meshes", "", with_mesh().count() - left_out);
-        self.report
-            .count(Fate::Ignored, "repeated meshes, too many for the memory", "", left_out);
+        let mut model = assembly.finish(&mut self.report);
         self.report_others();
-        let mut model = assembly.model;
         for (node, is_shown) in nodes.iter().zip(&shown) {
             // Cameras are there all the same.
             model
@@ -341,17 +315,7 @@ impl Reader<'_> {
                 ModelLens::Orthographic(camera.orthographic_size.y * metres)
             }
         };
-        let forward = world_from_node.transform_vector3(DVec3::NEG_Z).try_normalize()?;
-        let up = world_from_node
-            .transform_vector3(DVec3::Y)
-            .reject_from_normalized(forward);
-        Some(ModelCamera {
-            name: node.element.name.to_string(),
-            position: world_from_node.w_axis.truncate().to_array(),
-            forward: forward.to_array(),
-            up: up.try_normalize()?.to_array(),
-            lens,
-        })
+        camera_at(&node.element.name, world_from_node, lens)
     }
 
     fn light(&mut self, node: &ufbx::Node, light: &ufbx::Light) -> Option<ModelLight> {
@@ -387,16 +351,9 @@ impl Reader<'_> {
         let world_from_node = matrix(&node.node_to_world);
         let direction = &light.local_direction;
         let direction = DVec3::new(direction.x, direction.y, direction.z);
-        let forward = world_from_node.transform_vector3(direction).try_normalize()?;
-        Some(ModelLight {
-            name: name.to_owned(),
-            kind,
-            position: world_from_node.w_axis.truncate().to_array(),
-            forward: forward.to_array(),
-            color: [light.color.x, light.color.y, light.color.z].map(|x| x as f32),
-            intensity: light.intensity as f32,
-        })
-        .filter(|_| light.cast_light)
+        let color = [light.color.x, light.color.y, light.color.z].map(|x| x as f32);
+        let shining = (color, light.intensity as f32);
+        light_at((name, kind), world_from_node, direction, shining).filter(|_| light.cast_light)
     }
 
     /// Reports what a scene has besides meshes, lights and cameras.

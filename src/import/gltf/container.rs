@@ -45,7 +45,7 @@ const TEXTURE_SOURCES: [&str; 3] = ["KHR_texture_basisu", "EXT_texture_avif", "M
 
 /// A file whose JSON can be read, with its buffers.
 pub(super) struct Document {
-    path: PathBuf,
+    pub path: PathBuf,
     /// The files beside it, and who waits.
     pub files: Files,
     pub root: Root,

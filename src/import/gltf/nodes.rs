@@ -171,24 +171,13 @@ impl Walk<'_> {
     }
 }
 
-/// A camera looks along −Z of its node, with +Y up.
 fn camera_at(camera: &Camera, name: &str, world_from_node: DMat4) -> Option<ModelCamera> {
     let lens = match (&camera.perspective, &camera.orthographic) {
         (Some(perspective), _) => ModelLens::Perspective(f64::from(perspective.yfov).to_degrees()),
         (None, Some(orthographic)) => ModelLens::Orthographic(2.0 * f64::from(orthographic.ymag.abs())),
         (None, None) => return None,
     };
-    let forward = world_from_node.transform_vector3(DVec3::NEG_Z).try_normalize()?;
-    let up = world_from_node
-        .transform_vector3(DVec3::Y)
-        .reject_from_normalized(forward);
-    Some(ModelCamera {
-        name: camera.name.clone().unwrap_or_else(|| name.to_owned()),
-        position: world_from_node.transform_point3(DVec3::ZERO).to_array(),
-        forward: forward.to_array(),
-        up: up.try_normalize()?.to_array(),
-        lens,
-    })
+    crate::assembly::camera_at(camera.name.as_deref().unwrap_or(name), world_from_node, lens)
 }
 
 /// A light shines along −Z of its node.
@@ -200,15 +189,10 @@ fn light_at(light: &Json, name: &str, world_from_node: DMat4) -> Option<ModelLig
         _ => return None,
     };
     let number = |value: &Json| value.as_f64().map_or(1.0, |value| value as f32);
-    let forward = world_from_node.transform_vector3(DVec3::NEG_Z).try_normalize()?;
-    Some(ModelLight {
-        name: light["name"].as_str().unwrap_or(name).to_owned(),
-        kind,
-        position: world_from_node.transform_point3(DVec3::ZERO).to_array(),
-        forward: forward.to_array(),
-        color: [0, 1, 2].map(|channel| number(&light["color"][channel])),
-        intensity: number(&light["intensity"]),
-    })
+    let color = [0, 1, 2].map(|channel| number(&light["color"][channel]));
+    let name = light["name"].as_str().unwrap_or(name);
+    let shining = (color, number(&light["intensity"]));
+    crate::assembly::light_at((name, kind), world_from_node, DVec3::NEG_Z, shining)
 }
 
 /// Half the inner and half the outer angle of a spot's cone, radians.

@@ -3,8 +3,10 @@
 mod basis;
 mod bmp_runs;
 mod gpu;
+mod shipped;
 mod tiff_files;
 pub(crate) use gpu::is_container;
+pub use shipped::{is_shipped, shipped};
 
 use std::borrow::Cow;
 use std::fmt;
@@ -272,16 +274,19 @@ pub fn read_texture(path: &Path, is_color: bool, side_max: u32, budget: &Budget)
 }
 
 fn read_encoded(path: &Path, budget: &Budget) -> Result<Encoded<'static>, String> {
-    let read = || {
-        budget.check(limits::open(path)?.metadata()?.len())?;
-        limits::read(path, limits::BYTES_MAX)
+    let read = || match shipped(path) {
+        Some(bytes) => Ok(bytes.into()),
+        None => {
+            budget.check(limits::open(path)?.metadata()?.len())?;
+            limits::read(path, limits::BYTES_MAX).map(Cow::Owned)
+        }
     };
     let name = path
         .file_name()
         .unwrap_or(path.as_os_str())
         .to_string_lossy()
         .into_owned();
-    let bytes = read().map_err(|error| error.to_string())?.into();
+    let bytes = read().map_err(|error: std::io::Error| error.to_string())?;
     Ok(Encoded { name, bytes })
 }
 

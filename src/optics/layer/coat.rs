@@ -10,16 +10,13 @@
 
 use super::*;
 use crate::optics::albedo::{albedo_lookup, azimuth_place, rough_albedo_lookup};
-use crate::optics::coat_medium::{color_over, way_length};
+use crate::optics::coat_medium::{INNER_MAX, color_over, way_length};
 use crate::optics::curve::Curve;
 use crate::optics::frame::{frame_from_normal, frame_from_tangent};
 use crate::optics::fresnel::{fresnel, fresnel_dielectric, half_vector_cosine};
 use crate::optics::lobe::{Horizon, Lobe};
 use crate::optics::material::{COAT_ABSORBS, COAT_IS_GGX, COATS_BASE};
 use crate::optics::target::TextureTarget;
-
-/// Most of the light that a coat reflects back inside: at 1 nothing would get out.
-pub const INNER_MAX: f64 = 0.9999;
 
 /// The clear coat layer.
 #[derive(Debug)]
@@ -102,7 +99,7 @@ inlined! {
         } else if material.coat_anisotropy.differs(T::ZERO).any() {
             azimuth_place(material.coat_anisotropy, &coat_frame(material, surface), surface.wo)
         } else {
-            return albedo_lookup(tables, material.coat_table, cosine).x;
+            return albedo_lookup(tables, material.coat_table, cosine)[0];
         };
         let [albedo, ..] = rough_albedo_lookup(tables, material.coat_table, cosine, row);
         albedo

@@ -1,6 +1,5 @@
 //! Evaluation of a material for a sampled light direction.
 
-use super::coat::{absorbs_over, coat_tint};
 use super::*;
 use crate::optics::lobe::{is_mirror, lobe_evaluate};
 

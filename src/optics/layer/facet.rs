@@ -23,7 +23,7 @@ inlined! {
         material.transmits() & T::Mask::splat(has_facets) & !is_apart & bends(material)
     }
 
-    /// Lanes whose dielectric bends light. One of index 1 under a film or a coat does not: then no facet can be told from the
+    /// Lanes whose dielectric bends light. One of index 1 under a film or a cover does not: then no facet can be told from the
     /// directions, and all that the specular lobe does not reflect goes straight on.
     pub fn bends<T: Real>(material: &Material<T>) -> T::Mask {
         material.ior.differs(T::ONE)
@@ -43,7 +43,7 @@ inlined! {
     /// Transmittance of a facet, from the cosines between its normal and the view and the refracted direction.
     pub fn left_by_facet<T: Real>(material: &Material<T>, surface: &Surface<T>, [cosine, behind]: [T; 2]) -> Vec3<T> {
         let terms = material.fresnel_terms(surface.is_inside);
-        // Under a coat the reflection has another index than the refraction.
+        // Under a cover the reflection has another index than the refraction.
         let is_coated = terms.ior.differs(material.ior_ahead(surface.is_inside));
         let mut behind = behind;
         if is_coated.any() {

@@ -52,15 +52,15 @@ impl<T: Real> LayerModel<T> for Fuzz {
         }
 
         /// Lambert's lobe, whose samples the matrix turns.
-        fn lobe<'a>(_: &Material<T>, _: &'a [f32], surface: &Surface<T>) -> LayerLobe<'a, T> {
+        fn lobe<'a>(material: &Material<T>, _: &'a [f32], surface: &Surface<T>) -> LayerLobe<'a, T> {
             LayerLobe {
                 shape: base_shape(),
-                frame: surface.frame,
+                frame: fuzz_frame(material, surface),
             }
         }
 
         fn albedo(material: &Material<T>, _: &[f32], surface: &Surface<T>, _: Vec3<T>) -> LayerAlbedo<T> {
-            let share = material.fuzz_weight * fuzz_reflectance(material, surface.frame.normal.dot(surface.wo));
+            let share = material.fuzz_weight * fuzz_reflectance(material, fuzz_normal(material, surface).dot(surface.wo));
             LayerAlbedo {
                 reflected: material.fuzz_color * share,
                 transmittance: Vec3::splat(T::ONE - share),
@@ -76,7 +76,7 @@ impl<T: Real> LayerModel<T> for Fuzz {
         }
 
         fn refined_sample(material: &Material<T>, surface: &Surface<T>, xi: [T; 3], _: LobeSample<T>) -> LobeSample<T> {
-            let frame = fuzz_frame(surface);
+            let frame = fuzz_frame(material, surface);
             let [stretch, lean] = fuzz_matrix(material, frame.normal.dot(surface.wo));
             let cosine = local_from_world(&frame, raw_sample(&base_shape(), &frame, surface.wo, xi));
             let up = vec3(T::ZERO, T::ZERO, T::ONE);
@@ -93,7 +93,7 @@ impl<T: Real> LayerModel<T> for Fuzz {
         }
 
         fn refined(material: &Material<T>, surface: &Surface<T>, wi: Vec3<T>, _: [T; 2]) -> [T; 2] {
-            let frame = fuzz_frame(surface);
+            let frame = fuzz_frame(material, surface);
             let matrix = fuzz_matrix(material, frame.normal.dot(surface.wo));
             let folded = wi.reflected_at_plane(surface.normal);
             let [there, folded] = [wi, folded].map(|wi| fuzz_density(matrix, local_from_world(&frame, wi)));
@@ -105,9 +105,16 @@ impl<T: Real> LayerModel<T> for Fuzz {
 }
 
 inlined! {
+    /// The normal between the coat's and that of what lies below, by the coat's weight (OpenPBR 1.1).
+    fn fuzz_normal<T: Real>(material: &Material<T>, surface: &Surface<T>) -> Vec3<T> {
+        let normal = surface.frame.normal;
+        let mixed = normalize_or(normal.mix(surface.coat_normal, material.coat_weight), normal);
+        Vec3::select(material.coat_weight.above_zero(), mixed, normal)
+    }
+
     /// The frame with the view in the half plane of the tangent.
-    fn fuzz_frame<T: Real>(surface: &Surface<T>) -> Frame<T> {
-        frame_from_tangent(surface.frame.normal, surface.wo, T::ZERO)
+    fn fuzz_frame<T: Real>(material: &Material<T>, surface: &Surface<T>) -> Frame<T> {
+        frame_from_tangent(fuzz_normal(material, surface), surface.wo, T::ZERO)
     }
 
     /// What the matrix stretches the tangent plane by, and what it adds of the height along the view.

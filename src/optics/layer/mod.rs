@@ -45,7 +45,7 @@ pub mod specular;
 pub mod transmission;
 
 use base::Base;
-use coat::Coat;
+use coat::{Coat, absorbs_over, coat_tint};
 pub use density::material_density;
 pub use evaluate::{layer_evaluate, material_evaluate, material_is_mirror};
 pub use facet::{decides_by_facet, passes_on};

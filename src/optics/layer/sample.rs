@@ -1,6 +1,5 @@
 //! Directions drawn from a material.
 
-use super::coat::{absorbs_over, coat_tint};
 use super::evaluate::lobe_of;
 use super::*;
 use crate::optics::lobe::{is_mirror, lobe_sample};

@@ -1,6 +1,5 @@
 //! What guides a denoiser: albedo and normal of a material, over all its layers.
 
-use super::coat::{absorbs_over, coat_tint};
 use super::*;
 
 inlined! {

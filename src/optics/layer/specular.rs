@@ -79,7 +79,7 @@ impl<T: Real> LayerModel<T> for Specular {
 
         /// Without layers below: the Fresnel term at the view's angle.
         fn seen_albedo(material: &Material<T>, surface: &Surface<T>, share: &LayerShare<T>) -> Vec3<T> {
-            let cosine = surface.frame.normal.dot(surface.wo);
+            let cosine = surface.view_cosine();
             let alone = fresnel(&material.fresnel_terms(surface.is_inside), cosine);
             let seen = Vec3::select(has_more(material), share.albedo, alone);
             seen.masked(material.has_specular())
@@ -109,7 +109,7 @@ inlined! {
 
     /// Albedo of the specular lobe for a view, and that of its dielectric alone.
     fn specular_albedos<T: Real>(material: &Material<T>, tables: &[f32], surface: &Surface<T>) -> [Vec3<T>; 2] {
-        let cosine = surface.frame.normal.dot(surface.wo);
+        let cosine = surface.view_cosine();
         let is_within = surface.is_within(material);
         let mut albedos = [Vec3::ZERO; 2];
         if is_within.any() {
@@ -153,17 +153,16 @@ inlined! {
             ];
         }
         // A partly metallic material has the other table. This one is untinted where the tint is a factor.
-        let mean = if material.is_over_azimuth() {
-            let [r, g, b, _] = rough_albedo_lookup(tables, table, place, table_row(material, surface));
-            vec3(r, g, b)
-        } else {
-            albedo_lookup(tables, table, place)
+        let [r, g, b, _] = match material.is_over_azimuth() {
+            true => rough_albedo_lookup(tables, table, place, table_row(material, surface)),
+            false => albedo_lookup(tables, table, place),
         };
+        let mean = vec3(r, g, b);
         let tint = if terms.model == Fresnel::Dielectric { terms.tint } else { Vec3::ONE };
         [mean * tint, mean]
     }
 
-    /// The dielectric's integral where a texture varies the coat over it: between those without and under a whole coat, as the
+    /// The dielectric's integral where a texture varies the cover over it: between those without and under all of it, as the
     /// reflectances head-on are.
     fn dielectric_under_coat<T: Real>(material: &Material<T>, tables: &[f32], [place, row]: [T; 2], bare: T) -> T {
         let table = material.albedo_table + ROUGH_ALBEDO_LENGTH as u32;

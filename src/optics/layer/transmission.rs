@@ -27,13 +27,7 @@ impl<T: Real> LayerModel<T> for Transmission {
             }
         }
 
-        fn albedo(material: &Material<T>, tables: &[f32], surface: &Surface<T>, left: Vec3<T>) -> LayerAlbedo<T> {
-            let is_bent = bends(material);
-            let mut left = left;
-            if !is_bent.all() {
-                let gain = interface_gain(material, surface, &material.shape(tables));
-                left = Vec3::select(is_bent, left, (Vec3::ONE - (Vec3::ONE - left) * gain).at_least_zero());
-            }
+        fn albedo(material: &Material<T>, _: &[f32], _: &Surface<T>, left: Vec3<T>) -> LayerAlbedo<T> {
             let left_by_metal = left * (T::ONE - material.metalness);
             LayerAlbedo {
                 reflected: material.transmission_tint * left_by_metal * material.transmission_weight,
@@ -67,7 +61,7 @@ impl<T: Real> LayerModel<T> for Transmission {
                 let share = T::ONE - mirrored_share(reflected, refracted);
                 toward.probability = T::select(is_shared, of_facets * share, toward.probability);
             }
-            let by_facet = toward.color * interface_gain(material, surface, shape);
+            let by_facet = toward.color * interface_gain(material, surface, shape, false);
             toward.color = Vec3::select(bends(material), by_facet, straight);
             toward
         }

@@ -2,12 +2,16 @@
 
 use std::io;
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, Stdio};
+use std::time::Duration;
 
 use super::library::{Library, data_folder};
 
 /// What is downloaded, in words.
 pub const DOWNLOAD: &str = "90 MB";
+const DOWNLOAD_BYTES: f32 = 9e7;
+/// From one look at the download to the next.
+const LOOK: Duration = Duration::from_millis(200);
 
 /// The package, as in `scripts/setup`.
 const PACKAGE: &str = "pyoidn==2.5.1.0";
@@ -28,13 +32,14 @@ pub fn can_fetch() -> bool {
     cfg!(target_os = "linux") && data_folder().is_some()
 }
 
-/// Downloads the denoiser into the folder where the program looks for it, and has it looked for again.
-pub fn fetch() -> Result<(), String> {
+/// Downloads the denoiser into the folder where the program looks for it, and has it looked for again. `goes_on` hears the
+/// share that is there, and ends the download by false.
+pub fn fetch(goes_on: &dyn Fn(f32) -> bool) -> Result<(), String> {
     let folder = data_folder().ok_or("there is no folder for it: set HOME")?;
     std::fs::create_dir_all(&folder).map_err(failed(&folder))?;
     // Beside where it goes to: files are moved within one file system.
     let taken = tempfile::tempdir_in(&folder).map_err(failed(&folder))?;
-    install(taken.path())?;
+    install(taken.path(), goes_on)?;
     let there = taken.path().join(IN_PACKAGE);
     // All or none.
     let found: Vec<PathBuf> = NEEDED
@@ -52,11 +57,22 @@ pub fn fetch() -> Result<(), String> {
     Ok(())
 }
 
+/// Bytes of the files below a folder.
+fn size_of(folder: &Path) -> u64 {
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let size = |entry: std::fs::DirEntry| match entry.metadata() {
+        Ok(found) if found.is_dir() => size_of(&entry.path()),
+        Ok(found) => found.len(),
+        Err(_) => 0,
+    };
+    entries.map(size).sum()
+}
+
 fn failed(path: &Path) -> impl FnOnce(io::Error) -> String {
     move |error| format!("{}: {error}", path.display())
 }
 
-fn install(target: &Path) -> Result<(), String> {
+fn install(target: &Path, goes_on: &dyn Fn(f32) -> bool) -> Result<(), String> {
     let failed = |why: &str| Err(format!("the download of {PACKAGE} failed: {why}"));
     for installer in INSTALLERS {
         let Some((program, arguments)) = installer.split_first() else {
@@ -67,11 +83,25 @@ fn install(target: &Path) -> Result<(), String> {
             .args(arguments)
             .args(["install", "--no-deps", "--target"])
             .arg(target)
-            .arg(PACKAGE);
-        match command.output() {
+            .arg(PACKAGE)
+            // The installer downloads there first.
+            .env("TMPDIR", target)
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped());
+        let ended = command.spawn().and_then(|mut child| {
+            while child.try_wait()?.is_none() {
+                if !goes_on((size_of(target) as f32 / DOWNLOAD_BYTES).min(0.99)) {
+                    child.kill()?;
+                }
+                std::thread::sleep(LOOK);
+            }
+            child.wait_with_output()
+        });
+        match ended {
             Err(error) if error.kind() == io::ErrorKind::NotFound => {}
             Err(error) => return failed(&error.to_string()),
             Ok(output) if output.status.success() => return Ok(()),
+            Ok(_) if !goes_on(0.0) => return Err("the download was stopped".to_owned()),
             Ok(output) => {
                 let said = String::from_utf8_lossy(&output.stderr).into_owned();
                 // A Python without pip: another installer may be there.

@@ -41,8 +41,7 @@ pub struct Outcome {
 
 /// The worker's handle of the denoiser's thread: sends requests and collects results.
 pub struct Denoising {
-    /// `None` if no thread could be started.
-    thread: Option<Background<Request, Outcome>>,
+    thread: Background<Request, Outcome>,
     /// Whether the latest request has no result yet.
     is_pending: bool,
     /// Samples per pixel of the latest request of this render; 0 before the first.
@@ -61,21 +60,17 @@ impl Denoising {
     /// Starts the thread, which calls `wake` after each result.
     pub fn spawn(wake: impl Fn() + Send + 'static) -> Self {
         let mut denoiser = None;
-        let spawned = Background::spawn("denoise", wake, move |request, responder| {
+        let thread = Background::spawn("denoise", wake, move |request, responder| {
             answer(&mut denoiser, request, responder);
         });
-        let (thread, failure) = match spawned {
-            Ok(thread) => (Some(thread), None),
-            Err(error) => (None, Some(error.to_string())),
-        };
         Self {
+            failure: thread.failure(),
             thread,
             is_pending: false,
             requested_samples: 0,
             cancel: Arc::default(),
             late_seconds: 0.0,
             latest_seconds: 0.0,
-            failure,
         }
     }
 
@@ -120,7 +115,7 @@ impl Denoising {
 
     /// Whether there is a result to collect.
     pub fn has_outcome(&self) -> bool {
-        self.thread.as_ref().is_some_and(Background::has_answer)
+        self.thread.has_answer()
     }
 
     /// Requests a denoised image. Replaces a request that has not been started.
@@ -135,14 +130,12 @@ impl Denoising {
             is_early,
             cancel: self.cancel.clone(),
         };
-        if let Some(thread) = &self.thread {
-            thread.ask(request);
-        }
+        self.thread.ask(request);
     }
 
     /// Takes the latest result, if it is of the current render. After a failure nothing is denoised any more.
     pub fn collect(&mut self) -> Option<Outcome> {
-        let outcome = self.thread.as_ref()?.take()?;
+        let outcome = self.thread.take()?;
         if let Err(why) = &outcome.denoised {
             self.failure = Some(why.clone());
         }

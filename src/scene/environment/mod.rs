@@ -45,7 +45,7 @@ pub const SOURCE_MAX_HEIGHT: u32 = 32768;
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum EnvironmentSource {
-    /// Large warm and cool soft boxes in a bright room.
+    /// Large warm soft boxes in a warm room.
     #[default]
     Product,
     /// Soft boxes in a dark room.
@@ -104,7 +104,7 @@ macro_rules! built_in {
 
 #[rustfmt::skip]
 built_in! {
-    Product "product" "Product" "Large warm and cool soft boxes in a bright room." product;
+    Product "product" "Product" "Large warm soft boxes in a warm room." product;
     Studio "studio" "Studio" "Soft boxes in a dark room." studio;
     Portrait "portrait" "Portrait" "One large warm lamp near the camera, and reflectors." portrait;
     Rim "rim" "Rim" "Two narrow lamps behind the object, warm and cool, in the dark." rim;

@@ -17,7 +17,7 @@ use super::{geometry::Geometry, part::Vertex, triangle_normal};
 use crate::optics::frame::frame_from_tangent;
 use crate::optics::layer::fuzz::FUZZ_ROUGHNESS_MIN;
 use crate::optics::material::{
-    MATCHED_NODES, Material, NO_TEXTURE, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY, coat_blur,
+    MATCHED_NODES, Material, NO_TEXTURE, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY,
 };
 use crate::optics::numeric::normalize_or;
 use crate::optics::prelude::*;
@@ -236,12 +236,13 @@ fn box_uv<T: Scalar>(position: Vec3<T>, normal: Vec3<T>) -> [T; 2] {
     [box_right(normal).dot(position) * half + half, down * half + half]
 }
 
-/// The material at a surface point, with its textures and vertex colours applied. `tables` holds all materials' tables.
-pub fn textured_material<T: Scalar>(
+/// Materials at surface points, all of one slot, with textures and vertex colours applied. `tables` holds all materials' tables.
+#[inline(always)]
+pub fn textured_material<T: Real>(
     textures: &Textures,
     tables: &[f32],
     material: &Material<T>,
-    uvs: Uvs<T>,
+    uvs: &T::Each<Uvs<T::Scalar>>,
     vertex_color: Vec3<T>,
 ) -> Material<T> {
     let mut at_point = *material;
@@ -252,22 +253,12 @@ pub fn textured_material<T: Scalar>(
     if material.has_flag(VERTEX_EMISSION) {
         at_point.emission = material.emission * vertex_color;
     }
-    let value = |target| material_lookup(textures, material, target, uvs);
-    if let Some((color, _)) = value(On::BaseColor) {
-        at_point.base_color = at_point.base_color * color;
-        at_point.transmission_tint = at_point.transmission_tint * color;
-    }
-    put_coat(&mut at_point, textures, uvs);
-    // A map with both is looked up once.
-    let of_roughness = value(On::Roughness);
-    let blurs = material.has_varied_blur();
-    if of_roughness.is_some() || blurs {
-        at_point.ggx_roughness = material.texture_roughness;
-        if let Some((values, _)) = of_roughness {
-            at_point.ggx_roughness = material.texture_roughness * values.y;
-        }
+    multiply_by(textures, TextureTarget::ALL, uvs, &mut at_point);
+    at_point.fuzz_roughness = at_point.fuzz_roughness.max(T::from_f64(FUZZ_ROUGHNESS_MIN));
+    at_point.follow_coat();
+    if material.has_texture(&[On::Roughness]) || material.has_varied_blur() {
         at_point.roughness = at_point.ggx_roughness;
-        if blurs {
+        if material.has_varied_blur() {
             at_point.roughness = at_point.roughness_under_coat(at_point.roughness, at_point.coat_weight);
         }
         if material.roughness_table != NO_TEXTURE {
@@ -277,77 +268,32 @@ pub fn textured_material<T: Scalar>(
         let rough = at_point.roughness + (material.transmission_roughness - material.roughness);
         at_point.transmission_roughness = rough.clamp(T::ZERO, T::ONE);
     }
-    let is_shared = material.texture(On::Metalness) == material.texture(On::Roughness);
-    let of_metalness = if is_shared { of_roughness } else { value(On::Metalness) };
-    if let Some((values, _)) = of_metalness {
-        at_point.metalness = material.metalness * values.z;
-    }
-    if let Some((color, _)) = value(On::Emission) {
-        at_point.emission = at_point.emission * color;
-    }
-    if let Some((weight, _)) = value(On::Film) {
-        at_point.film_weight = material.film_weight * weight.x;
-    }
-    if let Some((share, _)) = value(On::FilmThickness) {
-        at_point.film_path = material.film_path * share.x;
-    }
-    if let Some((weight, _)) = value(On::Fuzz) {
-        at_point.fuzz_weight = material.fuzz_weight * weight.x;
-    }
-    if let Some((color, _)) = value(On::FuzzColor) {
-        at_point.fuzz_color = material.fuzz_color * color;
-    }
-    if let Some((_, share)) = value(On::FuzzRoughness) {
-        at_point.fuzz_roughness = (material.fuzz_roughness * share).max(T::from_f64(FUZZ_ROUGHNESS_MIN));
-    }
     at_point
 }
 
-/// The materials at the surface points of lanes, all of one slot: its material is given in all lanes and for one.
+/// Multiplies the parameters of some targets by their textures at surface points.
 #[inline(always)]
-pub fn textured_materials<T: Real>(
+pub fn multiply_by<T: Real>(
     textures: &Textures,
-    tables: &[f32],
-    (material, of_lane): (&Material<T>, &Material<T::Scalar>),
+    targets: &[TextureTarget],
     uvs: &T::Each<Uvs<T::Scalar>>,
-    vertex_color: Vec3<T>,
-) -> Material<T> {
-    let colors = vertex_color.to_each();
-    let at = T::each(|lane| TexturedNumbers::of(textured_material(textures, tables, of_lane, uvs[lane], colors[lane])));
-    TexturedNumbers::over(at.as_ref(), material)
-}
-
-macro_rules! textured_numbers {
-    ($($color:ident)* ; $($number:ident)*) => {
-        /// Parameters that [`textured_material`] changes.
-        #[derive(Clone, Copy, Default)]
-        struct TexturedNumbers<T> {
-            $($color: Vec3<T>,)*
-            $($number: T,)*
+    material: &mut Material<T>,
+) {
+    // A texture of targets in a row is looked up once.
+    let mut known = NO_TEXTURE;
+    let mut found = T::each(|_| Default::default());
+    for &target in targets.iter().filter(|target| !target.fields().is_empty()) {
+        let texture = material.texture(target);
+        if texture == NO_TEXTURE {
+            continue;
         }
-
-        impl<S: Scalar> TexturedNumbers<S> {
-            fn of(at: Material<S>) -> Self {
-                Self { $($color: at.$color,)* $($number: at.$number,)* }
-            }
-
-            /// A material with those of each lane.
-            #[inline(always)]
-            fn over<T: Real<Scalar = S>>(at: &[Self], material: &Material<T>) -> Material<T> {
-                Material {
-                    $($color: Vec3::from_lanes(|lane| at[lane].$color),)*
-                    $($number: T::from_lanes(|lane| at[lane].$number),)*
-                    ..*material
-                }
-            }
+        if texture != known {
+            known = texture;
+            found = T::each(|lane| texture_lookup::<T::Scalar>(textures, texture, uvs[lane]));
         }
-    };
-}
-
-textured_numbers! {
-    base_color transmission_tint emission coat_color film_path fuzz_color;
-    metalness roughness transmission_roughness coat_weight reflecting_ior ggx_roughness coat_roughness film_weight
-    fuzz_weight fuzz_roughness
+        let color = Vec3::from_lanes(|lane| found[lane].0);
+        material.multiply(target, color, T::from_lanes(|lane| found[lane].1));
+    }
 }
 
 /// Factors of emission and opacity that the vertices of a triangle give a place on it.
@@ -390,25 +336,6 @@ pub fn emission_at<T: Scalar>(
     match material_lookup(textures, material, On::Emission, uvs) {
         Some((emission, _)) => radiance * emission,
         None => radiance,
-    }
-}
-
-/// Varies the coat of a material by its textures.
-pub fn put_coat<T: Scalar>(material: &mut Material<T>, textures: &Textures, uvs: Uvs<T>) {
-    if let Some((weight, _)) = material_lookup(textures, material, On::Coat, uvs) {
-        material.coat_weight = material.coat_weight * weight.x;
-        if material.has_coated_table() {
-            material.reflecting_ior = material.ior_under_coat(material.coat_weight);
-        }
-    }
-    if let Some((values, _)) = material_lookup(textures, material, On::CoatRoughness, uvs) {
-        material.coat_roughness = material.coat_roughness * values.y;
-        if material.coat_blur.above_zero() {
-            material.coat_blur = coat_blur(material.coat_roughness);
-        }
-    }
-    if let Some((color, _)) = material_lookup(textures, material, On::CoatColor, uvs) {
-        material.coat_color = material.coat_color * color;
     }
 }
 

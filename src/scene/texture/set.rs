@@ -21,7 +21,7 @@ enum Meaning {
 use Meaning::{Is, IsInverted, Other, Packed};
 use TextureTarget as To;
 
-/// Known words, in lower case without separators. Of several words in a row the longest counts.
+/// Known words beside the targets' names, in lower case without separators. Of several words in a row the longest counts.
 const WORDS: &[(Meaning, &str)] = &[
     (
         Is(To::BaseColor),
@@ -39,13 +39,6 @@ const WORDS: &[(Meaning, &str)] = &[
     (Is(To::Opacity), "opacity alpha opac"),
     (IsInverted(To::Opacity), "transparency"),
     (Is(To::Emission), "emission emissive emit"),
-    (Is(To::Coat), "clearcoat coat"),
-    (Is(To::CoatRoughness), "clearcoatroughness coatroughness"),
-    (Is(To::CoatNormal), "clearcoatnormal coatnormal"),
-    (Is(To::CoatColor), "coatcolor coatcolour"),
-    (Is(To::Fuzz), "fuzz"),
-    (Is(To::FuzzRoughness), "fuzzroughness"),
-    (Is(To::FuzzColor), "fuzzcolor fuzzcolour"),
     (
         Other,
         "ao ambientocclusion occlusion displacement disp height bump specular spec preview thumbnail sheen anisotropy thickness curvature id",
@@ -81,7 +74,12 @@ fn meaning(path: &Path) -> Option<Meaning> {
         let row = WORDS
             .iter()
             .find(|(_, known)| known.split(' ').any(|word| word == text));
-        row.map(|(meaning, _)| *meaning)
+        let of_name = |target: &&TextureTarget| {
+            let name = target.name().replace('-', "");
+            [name.as_str(), &name.replace("color", "colour"), &format!("clear{name}")].contains(&text)
+        };
+        let of_name = || TextureTarget::ALL.iter().find(of_name).map(|target| Is(*target));
+        row.map(|(meaning, _)| *meaning).or_else(of_name)
     };
     (1..=words.len()).rev().find_map(|end| {
         let longest = (end.saturating_sub(3)..end).map(|start| words[start..end].concat());

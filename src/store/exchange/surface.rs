@@ -485,7 +485,7 @@ fn fresnel_terms(material: &MaterialSettings) -> FresnelTerms<f64> {
         k: Vec3::from_f32(material.k),
         // A thin film is reported as a part of its own.
         has_film: false,
-        coat: 1.0,
+        before: 1.0,
         film: FilmTerms::none_over(1.0),
     }
 }

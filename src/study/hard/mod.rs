@@ -66,7 +66,6 @@ pub struct HardCase {
 pub fn catalogue() -> impl Iterator<Item = &'static HardCase> {
     [
         lobe::CASES,
-        against_f64::COAT,
         against_f64::CASES,
         fresnel::CASES,
         geometry::CASES,

@@ -344,7 +344,6 @@ fn random_material(rng: &mut Rng, lobe: Lobe, curve: Curve, fresnel: Fresnel) ->
         coat_normal_strength: 0.5,
         alpha_cutoff: if rng.chance(0.5) { rng.range(0.1, 0.6) } else { -1.0 },
         normal_strength: rng.range(-1.0, 2.0),
-        texture_roughness: rng.range(0.1, 1.0),
         flags: rng.below(16) as u32 | (rng.below(8) as u32 * COATS_BASE),
         diffuse_roughness: if rng.chance(0.5) { rng.range(0.0, 1.0) } else { 0.0 },
         ..Material::default()

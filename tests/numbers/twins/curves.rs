@@ -75,10 +75,10 @@ fn fresnel_factors_agree() {
     let (share, shares) = (Output::Number(0.01), Output::Vector(0.01));
     let mut all = Case::new(
         "fresnel",
-        "model metal_f0 metalness edge_tint tint metal_tint weight ior eta k coat has_film film_weight film_ior film_behind film_path cosine \
+        "model metal_f0 metalness edge_tint tint metal_tint weight ior eta k coat has_film film_weight film_ior film_behind film_path has_bands cosine \
          behind",
         "let terms = FresnelTerms(model, metal_f0, metalness, edge_tint, tint, metal_tint, weight, ior, eta, k, \
-         coat, has_film == 1u, FilmTerms(film_weight, film_ior, film_behind, film_path));",
+         coat, has_film == 1u, FilmTerms(film_weight, film_ior, film_behind, film_path, has_bands == 1u));",
         twin!(|row| {
             let terms = FresnelTerms {
                 model: Fresnel::ALL[row.bits() as usize],
@@ -91,13 +91,14 @@ fn fresnel_factors_agree() {
                 ior: row.number(),
                 eta: row.vector(),
                 k: row.vector(),
-                coat: row.number(),
+                before: row.number(),
                 has_film: row.bits() == 1,
                 film: FilmTerms {
                     weight: row.number(),
                     ior: row.number(),
                     behind: row.number(),
                     path: row.vector(),
+                    has_bands: row.bits() == 1,
                 },
             };
             let (cosine, behind) = (row.number(), row.number());
@@ -107,9 +108,9 @@ fn fresnel_factors_agree() {
     )
     .output("fresnel(terms, cosine)", shares)
     .output("fresnel_left(terms, cosine, behind)", shares);
-    let films = Fresnel::ALL.iter().flat_map(|&model| [(model, 0), (model, 1)]);
-    for (model, has_film) in films {
-        let name = format!("{}{}", model.name(), if has_film == 1 { ", filmed" } else { "" });
+    let films = Fresnel::ALL.iter().flat_map(|&model| [0, 1, 2].map(|films| (model, films)));
+    for (model, films) in films {
+        let name = format!("{}{}", model.name(), ["", ", filmed", ", thickly filmed"][films as usize]);
         all = all.group(&name, move |rng, _| {
             let mut color = |high: f32| Value::Vector([(); 3].map(|()| high * rng.unit()));
             let (f0, tint, eta, k) = (color(1.0), color(1.0), color(4.0), color(8.0));
@@ -127,11 +128,12 @@ fn fresnel_factors_agree() {
                 eta,
                 k,
                 rng.range(1.0, 2.0),
-                has_film,
+                u32::from(films > 0),
                 rng.unit(),
                 rng.range(0.8, 3.0),
                 rng.range(0.7, 2.5),
-                Value::Vector([(); 3].map(|()| 14.0 * rng.unit())),
+                Value::Vector([(); 3].map(|()| if films == 2 { 60.0 } else { 14.0 } * rng.unit())),
+                u32::from(films == 2),
                 Value::Unit(rng.unit()),
                 Value::Unit(rng.unit())
             ]

@@ -5,6 +5,7 @@ use glossmith::optics::layer::{Layer, MaterialNumbers, material_evaluate, materi
 use glossmith::optics::lobe::{Lobe, lobe_sample, raw_sample};
 use glossmith::optics::material::{Material, Surface};
 use glossmith::optics::real::Scalar;
+use glossmith::optics::vector::vec3;
 use glossmith::scene::surface::bent_normal;
 
 use super::bench::SCENE;
@@ -166,7 +167,8 @@ fn materials_agree() {
                 twin!(|row| {
                     let material: Material<T> = SCENE.material(row.bits());
                     let cosine = row.number();
-                    row.put_vector(albedo_lookup(&SCENE.tables, material.albedo_table, cosine));
+                    let [r, g, b, _] = albedo_lookup(&SCENE.tables, material.albedo_table, cosine);
+                    row.put_vector(vec3(r, g, b));
                 }),
             )
             .output("rough_albedo_lookup(material_at(material).albedo_table, cosine, 0.0).xyz", COLOUR)

@@ -138,7 +138,7 @@ fn refraction_agrees() {
             .output("view.frame.normal", UNIT)
             .output("view.normal", UNIT)
             .output("view.wo", UNIT)
-            .number("view.roughness", 1.0)
+            .number("view.seen.roughness", 1.0)
             .group_of("", 16_000, |rng, _| {
                 let lobe = [Lobe::Geometric, Lobe::Phong, Lobe::Ggx][rng.below(3)];
                 let shape = random_shape(rng, lobe, Curve::Sqrt, false);

@@ -81,7 +81,7 @@ fn textured_materials_agree() {
                 twin!(|row| {
                     let material: Material<T> = SCENE.material(row.bits());
                     let tint = Vec3::from_f32([0.5, 0.75, 0.25]);
-                    let m = textured_material(&SCENE.textures, &SCENE.tables, &material, uvs(row), tint);
+                    let m = textured_material(&SCENE.textures, &SCENE.tables, &material, &T::each(|_| uvs(row)), tint);
                     row.put_vector(m.base_color);
                     row.put_vector(m.transmission_tint);
                     row.put_vector(m.emission);

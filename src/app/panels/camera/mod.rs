@@ -2,9 +2,6 @@
 
 mod photographic;
 mod reference;
-mod region;
-
-use photographic::Photographic;
 
 use super::*;
 use crate::app::desk::PICTURE_SIZE;
@@ -13,14 +10,12 @@ use crate::document::{Bookmark, range};
 
 /// Camera, view and render settings.
 #[derive(Default)]
-pub struct CameraPanel {
-    photographic: Photographic,
-}
+pub struct CameraPanel;
 
 impl Panel for CameraPanel {
     fn show(&mut self, ui: &mut Ui, desk: &mut Desk) {
         widgets::group(ui, "Camera", |ui| camera(ui, desk));
-        widgets::group(ui, "Lens", |ui| self.photographic.show(ui, desk));
+        widgets::group(ui, "Lens", |ui| photographic::show(ui, desk));
         widgets::group(ui, "Bookmarks", |ui| bookmarks(ui, desk));
         widgets::group(ui, "View", |ui| view(ui, desk));
         widgets::group(ui, "Image", |ui| picture(ui, desk));
@@ -38,7 +33,7 @@ fn view(ui: &mut Ui, desk: &mut Desk) {
     let remove = ("Remove the table of colours", "Shows the image without it");
     if desk.file_row(ui, name, file.as_deref(), Action::ChooseLut, remove) {
         desk.document.view.lut = None;
-        desk.edits.note(remove.0, "");
+        desk.edits.did(remove.0);
     }
     widgets::comes_and_goes(ui, |ui| reference::show(ui, desk));
 }
@@ -101,11 +96,11 @@ fn bookmarks(ui: &mut Ui, desk: &mut Desk) {
                 let remove = format!("Remove {}", name.to_lowercase());
                 if icons::button(ui, Icon::Close, &remove, "Remove this bookmark").clicked() {
                     removed = Some(index);
-                    desk.edits.note("Remove bookmark", "");
+                    desk.edits.did("Remove bookmark");
                 }
                 if widgets::pressed(ui, "Update", "Replaces it by the present camera.") {
                     bookmark.camera = desk.document.camera;
-                    desk.edits.note("Update bookmark", "");
+                    desk.edits.did("Update bookmark");
                 }
                 if widgets::wide_field(ui, &mut bookmark.name, &name).changed() {
                     desk.edits.note("Rename bookmark", name);
@@ -121,7 +116,7 @@ fn bookmarks(ui: &mut Ui, desk: &mut Desk) {
             name: format!("View {}", bookmarks.len() + 1),
             camera: desk.document.camera,
         });
-        desk.edits.note("Add bookmark", "");
+        desk.edits.did("Add bookmark");
     }
     desk.document.bookmarks = bookmarks;
 }
@@ -136,5 +131,4 @@ fn picture(ui: &mut Ui, desk: &mut Desk) {
             photographic::aspect(ui, desk);
         }
     });
-    widgets::comes_and_goes(ui, |ui| region::show(ui, desk));
 }

@@ -1,17 +1,12 @@
-//! The camera in a photographer's terms, beside the values that are kept: focal length on a sensor, f-number, aspect.
+//! The camera in a photographer's terms, beside the values that are kept: focal length, f-number, aspect.
 
 use super::*;
+use crate::render::worker::Scene;
 
-/// Sensors by their height in millimetres.
-const SENSORS: [(f64, &str, &str); 5] = [
-    (24.0, "Full frame", "36 × 24 mm"),
-    (15.6, "APS-C", "23.5 × 15.6 mm"),
-    (18.66, "Super 35", "24.89 × 18.66 mm"),
-    (13.0, "Four Thirds", "17.3 × 13 mm"),
-    (33.0, "Medium format", "44 × 33 mm"),
-];
-/// Millimetres in a unit of the scene, which glTF says is a metre.
-const MM_PER_UNIT: f64 = 1000.0;
+/// Height of a full frame, millimetres.
+const SENSOR_HEIGHT_MM: f64 = 24.0;
+/// Millimetres in a metre.
+const MM_PER_M: f64 = 1000.0;
 /// Width to height of the images to choose from.
 const ASPECTS: [([u32; 2], &str); 7] = [
     ([1, 1], "1 : 1"),
@@ -23,37 +18,13 @@ const ASPECTS: [([u32; 2], &str); 7] = [
     ([9, 16], "9 : 16"),
 ];
 
-/// The sensor that focal lengths refer to.
-pub struct Photographic {
-    sensor_height_mm: f64,
-}
-
-impl Default for Photographic {
-    fn default() -> Self {
-        Self {
-            sensor_height_mm: SENSORS[0].0,
-        }
-    }
-}
-
-impl Photographic {
-    pub fn show(&mut self, ui: &mut Ui, desk: &mut Desk) {
-        let help = "Sensor size for focal length only; doesn't change the image.";
-        let height_mm = &mut self.sensor_height_mm;
-        widgets::value_row(
-            ui,
-            ["Sensor", "Sensor", help],
-            height_mm,
-            SENSORS[0].0,
-            |ui, height_mm| widgets::choice(ui, "sensor", height_mm, &SENSORS),
-        );
-        let height_mm = *height_mm;
-        let focal_mm = |fov_deg: f64| 0.5 * height_mm / (0.5 * fov_deg).to_radians().tan();
-        let fov_deg = |focal_mm: f64| 2.0 * (0.5 * height_mm / focal_mm).atan().to_degrees();
+pub fn show(ui: &mut Ui, desk: &mut Desk) {
+        let focal_mm = |fov_deg: f64| 0.5 * SENSOR_HEIGHT_MM / (0.5 * fov_deg).to_radians().tan();
+        let fov_deg = |focal_mm: f64| 2.0 * (0.5 * SENSOR_HEIGHT_MM / focal_mm).atan().to_degrees();
         let range = focal_mm(*range::FOV_DEG.end())..=focal_mm(*range::FOV_DEG.start());
         let present_mm = focal_mm(desk.document.camera.fov_deg);
         let style = NumberStyle::plain(range, " mm", 0.005 * present_mm, 1);
-        let help = "The field of view as a lens on the sensor has it.";
+        let help = "The field of view as a lens before a full frame (36 × 24 mm) has it.";
         let name = ["Focal length", "Focal length", help];
         desk.row(
             ui,
@@ -66,13 +37,12 @@ impl Photographic {
         frames.on_hover_text(
             "Marks what every screen shows: actions within 93 %, titles within 90 % of the image (EBU R 95).",
         );
-    }
 }
 
 /// Known once the model is, which says how large a bounding radius is.
 fn f_number(ui: &mut Ui, desk: &mut Desk, focal_mm: f64) {
     let Some(scene) = desk.scene() else { return };
-    let mm_per_radius = scene.job.geometry.world_units_per_unit * MM_PER_UNIT;
+    let mm_per_radius = scene.job.geometry.world_units_per_unit * MM_PER_M * desk.document.unit_m;
     // Either way.
     let exchanged = |x: f64| match x > 0.0 {
         true => focal_mm / (2.0 * mm_per_radius * x),
@@ -85,8 +55,9 @@ fn f_number(ui: &mut Ui, desk: &mut Desk, focal_mm: f64) {
         // would get in the way of undo.
         ..NumberStyle::plain(0.0..=f64::MAX, "", speed, 4)
     };
-    let help = "Focal length over the lens's diameter, where a unit of the scene is a metre: the smaller, the less is sharp. \
+    let help = "Focal length over the lens's diameter, where a unit of the scene is as large as Light › Scene unit says: the smaller, the less is sharp. \
                 0 is a pinhole, with which everything is sharp.";
+    let blur = blur_px(scene);
     desk.row(
         ui,
         ["f-number", "f-number", help],
@@ -96,6 +67,23 @@ fn f_number(ui: &mut Ui, desk: &mut Desk, focal_mm: f64) {
             widgets::number_as(ui, aperture, &style, exchanged, of_number)
         },
     );
+    widgets::comes_and_goes(ui, |ui| {
+        if (f64::MIN_POSITIVE..1.0).contains(&blur) {
+            let text = format!(
+                "Nothing blurs: the model is {:.2} m across. Choose a smaller f-number, or a smaller unit in Light › Scene unit.",
+                2e-3 * mm_per_radius
+            );
+            widgets::note(ui, text);
+        }
+    });
+}
+
+/// How wide a point far behind what is sharp becomes in the image, pixels.
+fn blur_px(scene: &Scene) -> f64 {
+    let camera = &scene.document.camera;
+    let (settings, height) = (&scene.job.settings.camera, f64::from(scene.document.render.height));
+    let distance = (settings.focus_distance - settings.parallel_from).max(1e-9);
+    camera.aperture / (0.5 * camera.fov_deg).to_radians().tan() / distance * height
 }
 
 /// The image's width to height, where its size is the document's: a choice changes the height.

@@ -16,7 +16,7 @@ pub fn show(ui: &mut Ui, desk: &mut Desk) {
     let remove = ("Remove the reference image", "Removes it from the viewport");
     if desk.file_row(ui, name, file.as_deref(), Action::ChooseReference, remove) {
         desk.document.view.reference = None;
-        desk.edits.note(remove.0, "");
+        desk.edits.did(remove.0);
     }
     let Some(reference) = &mut desk.document.view.reference else {
         return;

@@ -25,7 +25,7 @@ pub fn show(ui: &mut Ui, state: &mut BenchmarkState, desk: &mut Desk) {
     let takes = (!quick).then(|| "takes two minutes".to_owned());
     state
         .worker
-        .controls(ui, desk, ("Run the benchmark", help), takes, |_| {
+        .controls(ui, desk, ("Run the benchmark", help, true), takes, |_| {
             let options = BenchmarkOptions {
                 engine: EngineChoice::Auto,
                 seconds: SECONDS[usize::from(quick)],

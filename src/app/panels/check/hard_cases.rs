@@ -1,83 +1,61 @@
 //! The hard cases, a line each with its verdict and, where it renders one, its image.
 
-use std::sync::atomic::AtomicBool;
+use std::sync::Mutex;
 
-use super::run::Run;
 use super::*;
 use crate::app::kit::tile::pixels;
 use crate::document::ViewSettings;
+use crate::panics::lock;
 use crate::render::EngineChoice;
 use crate::render::display::display;
-use crate::study::StudyError;
 use crate::study::hard::{HardRow, Stage, catalogue};
 
 /// Side of a case's image in points.
 const PICTURE_SIDE: f32 = 40.0;
 
-/// How a run stands: the rows so far, and what is being run or went wrong.
-#[derive(Clone, Default)]
-struct Status {
-    rows: Vec<HardRow>,
-    running: Option<&'static str>,
-    error: Option<String>,
-}
-
 /// What the page remembers.
 #[derive(Default)]
 pub struct HardState {
-    run: Run<Status>,
+    pub worker: StudyWorker<()>,
+    /// The rows so far.
+    rows: Arc<Mutex<Vec<HardRow>>>,
     /// Images by case, as textures of this run.
     textures: Vec<(&'static str, TextureHandle)>,
 }
 
 /// The page, for the engine that renders.
-pub fn show(ui: &mut Ui, state: &mut HardState, engine: EngineChoice) {
+pub fn show(ui: &mut Ui, desk: &mut Desk, state: &mut HardState, engine: EngineChoice) {
     widgets::note(
         ui,
         "Places where naive code breaks, each with what it does here: measured against its limit.",
     );
-    let standing = state.run.show(ui, "Run the hard cases", || {
-        state.textures.clear();
-        Box::new(move |stop, publish| run(engine, stop, publish))
+    let HardState { worker, rows, textures } = state;
+    let stop = worker.stop.clone();
+    worker.controls(ui, desk, ("Run the hard cases", "", false), None, |_| {
+        textures.clear();
+        *rows = Arc::default();
+        let rows = rows.clone();
+        Box::new(move |watch| {
+            work_apart();
+            let mut stage = Stage::open(engine, false, stop)?;
+            let count = catalogue().count();
+            for (done, case) in catalogue().enumerate() {
+                let what = format!("{} ({} of {count})", in_words(case.name), done + 1);
+                let share = done as f64 / count as f64;
+                if !watch(StudyProgress { share, what }) {
+                    return Err(StudyError::Stopped);
+                }
+                lock(&rows).push(case.run(&mut stage)?);
+            }
+            Ok(())
+        })
     });
-    let Some(standing) = standing else { return };
-    widgets::comes_and_goes(ui, |ui| {
-        if let Some(name) = standing.running.filter(|_| !state.run.is_stopped()) {
-            let (done, all) = (standing.rows.len(), catalogue().count());
-            let left = state.run.left(", ", done as f64 / all as f64);
-            widgets::note(ui, format!("{} ({} of {all}{left})", in_words(name), done + 1));
-        }
-    });
-    widgets::failure(ui, standing.error);
     Grid::new("hard cases").num_columns(3).striped(true).show(ui, |ui| {
-        for row in &standing.rows {
-            line(ui, row, &mut state.textures);
+        for row in lock(rows).iter() {
+            line(ui, row, textures);
             ui.end_row();
         }
     });
-}
-
-/// Runs case after case, publishing after each, until it is stopped.
-fn run(engine: EngineChoice, stop: Arc<AtomicBool>, publish: &dyn Fn(Status)) {
-    let mut standing = Status::default();
-    let mut stage = match Stage::open(engine, false, stop) {
-        Ok(stage) => stage,
-        Err(error) => {
-            standing.error = Some(error.to_string());
-            return publish(standing);
-        }
-    };
-    for case in catalogue() {
-        standing.running = Some(case.name);
-        publish(standing.clone());
-        match case.run(&mut stage) {
-            Ok(row) => standing.rows.push(row),
-            Err(StudyError::Stopped) => return,
-            Err(error) => standing.error = Some(error.to_string()),
-        }
-    }
-    standing.running = None;
-    publish(standing);
 }
 
 fn line(ui: &mut Ui, row: &HardRow, textures: &mut Vec<(&'static str, TextureHandle)>) {

@@ -2,29 +2,22 @@
 
 mod benchmark;
 mod hard_cases;
-mod run;
+
+use std::cell::RefCell;
 
 use benchmark::BenchmarkState;
 use hard_cases::HardState;
-use run::Run;
 
 use super::*;
-use crate::app::study::engine;
+use crate::app::study::{StudyWorker, engine};
+use crate::render::priority::work_apart;
 use crate::study::check::{Check, CheckOptions, GroupSummary, run, summaries};
-
-/// How a run stands.
-#[derive(Clone)]
-enum Status {
-    /// What is checked, and the share that is done.
-    Checking(String, f64),
-    Done(Vec<Check>),
-    Failed(String),
-}
+use crate::study::{StudyError, StudyProgress};
 
 /// The checks, the hard cases and the benchmark.
 #[derive(Default)]
 pub struct CheckPanel {
-    run: Run<Status>,
+    worker: StudyWorker<Vec<Check>>,
     thorough: bool,
     hard: HardState,
     benchmark: BenchmarkState,
@@ -40,33 +33,31 @@ impl Panel for CheckPanel {
         );
         ui.checkbox(&mut self.thorough, "Thorough")
             .on_hover_text("Every lobe at every roughness and angle, with more samples: takes minutes.");
-        let thorough = self.thorough;
-        let standing = self.run.show(ui, "Check this machine", || {
-            Box::new(move |stop, publish| {
-                let progress = |group: &str, share: f64| publish(Status::Checking(group.to_owned(), share));
-                match run(CheckOptions { engine, thorough }, &stop, progress) {
-                    Ok(checks) => checks.into_iter().for_each(|checks| publish(Status::Done(checks))),
-                    Err(error) => publish(Status::Failed(error.to_string())),
-                }
+        let (thorough, stop) = (self.thorough, self.worker.stop.clone());
+        let label = ("Check this machine", "", false);
+        self.worker.controls(ui, desk, label, None, |_| {
+            Box::new(move |watch| {
+                work_apart();
+                let watch = RefCell::new(watch);
+                let progress = |group: &str, share| {
+                    let what = format!("Checking {group} …");
+                    watch.borrow_mut()(StudyProgress { share, what });
+                };
+                run(CheckOptions { engine, thorough }, &stop, progress)?.ok_or(StudyError::Stopped)
             })
         });
-        widgets::comes_and_goes(ui, |ui| match standing {
-            None => {}
-            Some(Status::Checking(..)) if self.run.is_stopped() => {}
-            Some(Status::Checking(group, share)) => {
-                let left = self.run.left(" ", share);
-                widgets::note(ui, format!("Checking {group} …{left}"));
-            }
-            Some(Status::Failed(why)) => widgets::failure(ui, why),
-            Some(Status::Done(checks)) => table(ui, &checks),
+        widgets::comes_and_goes(ui, |ui| {
+            self.worker.found().iter().for_each(|checks| table(ui, checks));
         });
         ui.separator();
-        widgets::comes_and_goes(ui, |ui| hard_cases::show(ui, &mut self.hard, engine));
+        widgets::comes_and_goes(ui, |ui| hard_cases::show(ui, desk, &mut self.hard, engine));
         ui.separator();
         benchmark::show(ui, &mut self.benchmark, desk);
     }
 
     fn tick(&mut self, desk: &mut Desk) {
+        self.worker.tick(desk);
+        self.hard.worker.tick(desk);
         self.benchmark.worker.tick(desk);
     }
 }

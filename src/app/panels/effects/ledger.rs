@@ -30,7 +30,7 @@ pub fn controls(ui: &mut Ui, desk: &mut Desk, state: &mut LedgerState) {
     };
     let count = desk.snapshot.scene.as_ref().map(|scene| scene.job.plan.effects().len());
     let takes = count.map(|count| format!("takes about {}", about(options(desk).seconds(count))));
-    worker.controls(ui, desk, ("Profile features", help), takes, |desk| {
+    worker.controls(ui, desk, ("Profile features", help, true), takes, |desk| {
         let document = small_document(desk, SIDE_MAX);
         let options = options(desk);
         Box::new(move |watch| ledger(&document, &options, watch))

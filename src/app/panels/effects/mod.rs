@@ -35,7 +35,7 @@ impl Panel for EffectsPanel {
         let switches = desk.document.render.effects;
         if switches != EffectSwitches::default() && ui.button("All automatic").clicked() {
             desk.document.render.effects = EffectSwitches::default();
-            desk.edits.note("All effects automatic", "");
+            desk.edits.did("All effects automatic");
         }
         ui.add_space(theme::GAP);
         for (effect, decision) in plan.table() {
@@ -116,6 +116,6 @@ fn switch(ui: &mut Ui, desk: &mut Desk, effect: &Effect) {
     shown.response.accessible_name(name);
     if chosen != current {
         desk.document.render.effects.set(effect.id, chosen);
-        desk.edits.note(format!("Switch {}", effect.label.to_lowercase()), "");
+        desk.edits.did(format!("Switch {}", effect.label.to_lowercase()));
     }
 }

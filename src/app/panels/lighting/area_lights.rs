@@ -50,14 +50,14 @@ pub fn show(ui: &mut Ui, desk: &mut Desk) {
             for (other, light) in lights.iter_mut().enumerate() {
                 light.is_muted = !is_over && other != index;
             }
-            desk.edits.note("Solo area light", "");
+            desk.edits.did("Solo area light");
         }
         Some((Asked::Remove, index)) => {
             lights.remove(index);
             // What another light was to be picked for would become its neighbour's.
             desk.shared.viewing.picks = None;
             desk.shared.selection.light = None;
-            desk.edits.note("Remove area light", "");
+            desk.edits.did("Remove area light");
         }
         None => {}
     }
@@ -70,7 +70,7 @@ pub fn show(ui: &mut Ui, desk: &mut Desk) {
                 if button.clicked() && !is_full {
                     desk.shared.selection.light = Some(lights.len());
                     lights.push(in_view(desk, made(), lights.len()));
-                    desk.edits.note(name.clone(), "");
+                    desk.edits.did(name.clone());
                 }
                 button.accessible_name(name);
             }
@@ -138,7 +138,7 @@ fn header(
             }
             if button(ui, "Mute", light.is_muted, "Mute: light off and hidden.") {
                 light.is_muted = !light.is_muted;
-                desk.edits.note("Mute area light", "");
+                desk.edits.did("Mute area light");
             }
         });
     });
@@ -195,7 +195,7 @@ fn profile(ui: &mut Ui, desk: &mut Desk, (title, index): (&str, usize), light: &
     let name = [full.as_str(), "Profile", help];
     if desk.file_row(ui, name, file, Action::ChooseProfile(index), remove) {
         light.profile = None;
-        desk.edits.note("Remove the light profile", "");
+        desk.edits.did("Remove the light profile");
     }
 }
 

@@ -42,7 +42,7 @@ fn ground(ui: &mut Ui, desk: &mut Desk) {
     let help = "The camera looks straight at the wall.";
     if widgets::pressed_if(ui, has_wall, "Turn the wall away from the camera", help, "") {
         desk.document.lighting.ground.yaw_deg = desk.document.camera.yaw_deg;
-        desk.edits.note("Cyclorama turned", "");
+        desk.edits.did("Cyclorama turned");
     }
 }
 

@@ -3,7 +3,7 @@
 use egui_plot::{LineStyle, Plot};
 
 use super::*;
-use crate::app::kit::charts::{line, powers, short, still};
+use crate::app::kit::charts::{height, line, powers, short, still};
 use crate::plot::lobe_view::{Axis, Series};
 use crate::plot::series_color;
 
@@ -21,9 +21,9 @@ fn place(axis: &Axis, value: f64) -> f64 {
     }
 }
 
-/// Height of a line plot of this width, points.
-pub fn plot_height(width: f32) -> f32 {
-    (0.8 * width).clamp(160.0, 420.0)
+/// Height of a line plot, points.
+pub fn plot_height(ui: &Ui) -> f32 {
+    height(ui, 0.8, 230.0)
 }
 
 /// How the radii of a polar plot are shown: a narrow lobe is a needle otherwise.
@@ -71,7 +71,7 @@ impl Radii {
 
 /// Shows a line plot over the width there is; radii of a polar one as `radii` says.
 pub fn line_plot(ui: &mut Ui, id: &str, plot: &LinePlot, radii: &Radii) {
-    let height = plot_height(ui.available_width());
+    let height = plot_height(ui);
     let (shown, caption, lines): (_, _, Vec<Vec<[f64; 2]>>) = if plot.is_polar {
         let axis = radii.axis(plot);
         let [low, high] = axis.range.map(short);

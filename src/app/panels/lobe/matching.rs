@@ -32,7 +32,7 @@ type Answer = Result<Arc<Matched>, String>;
 /// What the panel remembers.
 #[derive(Default)]
 pub struct MatchState {
-    worker: Option<Background<Query, Answer>>,
+    worker: Beside<Query, Answer>,
 }
 
 /// The button, and what came of it.
@@ -54,19 +54,15 @@ pub fn show(ui: &mut Ui, desk: &mut Desk, state: &mut MatchState, source: Option
             .unwrap_or(Lobe::Geometric),
         view_angle_deg: f64::from(desk.shared.view_angle_deg).min(VIEW_ANGLE_MAX_DEG),
     };
-    let worker = started(&mut state.worker, ui.ctx(), |repaint| {
-        Background::spawn("match look", repaint, |query, responder| responder.publish(find(query)))
-    });
-    let Some(worker) = worker else {
-        widgets::note(ui, "Cannot start a thread to compute.");
-        return;
-    };
+    let worker = &mut state.worker;
     let is_busy = worker.is_busy();
     ui.horizontal(|ui| {
         let help = "Looks for the roughness, and for the geometric lobe also the curve, that come closest to it at \
                     this view angle.";
         if widgets::pressed_if(ui, !is_busy, "Match look", help, "") {
-            worker.ask(query.clone());
+            worker.ask_again(ui.ctx(), "match look", query.clone(), |query, responder| {
+                responder.publish(find(query));
+            });
         }
         if is_busy {
             ui.add(Spinner::new().size(12.0));

@@ -9,14 +9,13 @@ use matching::MatchState;
 
 use super::*;
 use crate::app::kit::tile::rgb_pixels;
-use crate::app::services::beside::started;
+use crate::app::services::beside::Beside;
 use crate::matching::lobe_of_material;
 use crate::optics::curve::Curve;
 use crate::optics::lobe::Lobe;
 use crate::optics::lobe::model::LobeModel;
 use crate::plot::lobe_view::{LinePlot, LobeView, MapPlot, SolidPlot, ViewKind, lobe_view};
 use crate::plot::plot_picture;
-use crate::render::background::Background;
 
 /// Images are drawn this much larger than they are shown on a screen of one pixel a point.
 const ZOOM: f64 = 1.5;
@@ -33,8 +32,7 @@ enum Other {
 /// The selected material's lobe, beside another one.
 #[derive(Default)]
 pub struct LobePanel {
-    worker: Option<Background<Query, Arc<Answer>>>,
-    asked: Option<Query>,
+    worker: Beside<Query, Arc<Answer>>,
     kind: Option<ViewKind>,
     other: Other,
     other_roughness: Option<f32>,
@@ -143,22 +141,13 @@ fn controls(ui: &mut Ui, desk: &mut Desk, panel: &mut LobePanel, mut kind: ViewK
 }
 
 fn view(ui: &mut Ui, state: &mut LobePanel, query: Query) {
-    let worker = started(&mut state.worker, ui.ctx(), |repaint| {
-        Background::spawn("lobe view", repaint, |query, responder| {
-            let shown = compute(&query);
-            responder.publish(Arc::new((query, shown)))
-        })
+    let worker = &mut state.worker;
+    let answer = worker.ask(ui.ctx(), "lobe view", query.clone(), |query, responder| {
+        let shown = compute(&query);
+        responder.publish(Arc::new((query, shown)))
     });
-    let Some(worker) = worker else {
-        return widgets::note(ui, "Cannot start a thread to compute.");
-    };
-    if state.asked.as_ref() != Some(&query) {
-        worker.ask(query.clone());
-        state.asked = Some(query.clone());
-    }
     widgets::failure(ui, worker.failure());
-    let answer = worker.latest().filter(|answer| answer.0.is_named_like(&query));
-    let Some(answer) = answer else {
+    let Some(answer) = answer.filter(|answer| answer.0.is_named_like(&query)) else {
         if worker.is_busy() {
             computing(ui);
         }
@@ -199,8 +188,8 @@ fn view(ui: &mut Ui, state: &mut LobePanel, query: Query) {
 
 /// A place as large as a chart's, until that is there: nothing of another name is shown in it.
 fn computing(ui: &mut Ui) {
-    let width = ui.available_width();
-    let (place, response) = ui.allocate_exact_size(vec2(width, plot_height(width)), Sense::hover());
+    let size = vec2(ui.available_width(), plot_height(ui));
+    let (place, response) = ui.allocate_exact_size(size, Sense::hover());
     widgets::describe(&response, Role::Label, "Computing the lobe");
     let spinner = Rect::from_center_size(place.center(), Vec2::splat(24.0));
     Spinner::new().paint_at(ui, spinner);

@@ -8,9 +8,11 @@ use std::cell::Cell;
 use super::*;
 use crate::app::kit::tile::Tile;
 use crate::app::kit::{keys, parameter_row};
+use crate::app::services::selection::Thing;
 use crate::document::material::Conductor;
 use crate::document::{MaterialSettings, PARAMETERS, Parameter};
 use crate::optics::fresnel::Fresnel;
+use crate::store::PRESETS;
 
 /// Side of the ball before a slot's name, points.
 const BALL: f32 = 26.0;
@@ -52,6 +54,11 @@ impl MaterialPanel {
     }
 }
 
+/// Whether a parameter is left to *Measure*: the paper's horizon, as long as it is what it is at first.
+fn is_for_measuring(parameter: &Parameter, material: &MaterialSettings, measures: bool) -> bool {
+    !measures && parameter.key == "specular.horizon" && parameter.get(material) == parameter.default_value()
+}
+
 /// Whether a group says nothing of the material: all of it is as it is at first.
 fn is_at_default(desk: &Desk, group: &str, material: &MaterialSettings) -> bool {
     let is_other = |parameter: &Parameter| parameter.get(material) != parameter.default_value();
@@ -71,8 +78,9 @@ impl Panel for MaterialPanel {
         ui.add_space(theme::GAP);
         let mut groups: Vec<&'static str> = PARAMETERS.iter().map(|parameter| parameter.group).collect();
         groups.dedup();
+        let measures = desk.shared.viewing.measures;
         // The switches of textures stand beside their images.
-        let is_shown = |parameter: &&Parameter| !parameter.key.ends_with("_texture") && (parameter.applies)(&before);
+        let is_shown = |parameter: &&Parameter| !parameter.key.ends_with("_texture") && (parameter.applies)(&before) && !is_for_measuring(parameter, &before, measures);
         for group in groups {
             let parameters = || PARAMETERS.iter().filter(|parameter| parameter.group == group);
             // What says nothing is folded whenever another material is shown; the user opens it for as long.
@@ -135,6 +143,10 @@ fn slots(ui: &mut Ui, desk: &mut Desk, search: &mut String) {
                 }
             }
         });
+        let chosen = desk.shared.selection.slots().len();
+        if chosen > 1 {
+            widgets::note(ui, format!("{chosen} materials are edited together."));
+        }
     });
 }
 
@@ -158,16 +170,36 @@ fn slot_entry(
         picture: ball,
         size: Vec2::splat(BALL),
         color: widgets::shown(material.base_color),
-        is_current: is_selected,
+        is_current: desk.shared.selection.slots().contains(&slot),
     };
     let item = row.row(ui);
+    desk.light_up(ui, &item, Thing::Slot(slot));
+    item.dnd_set_drag_payload(material.clone());
+    if let Some(dropped) = item.dnd_release_payload() {
+        desk.drop_on(slot, &dropped);
+    }
+    item.context_menu(|ui| {
+        for command in [Command::CopyMaterial, Command::PasteMaterial, Command::FrameSelected] {
+            let is_possible = command != Command::PasteMaterial || desk.shared.selection.copied.is_some();
+            if widgets::pressed_if(ui, is_possible, command.label(), command.help(), "") {
+                desk.shared.selection.objects.clear();
+                desk.actions.push(Action::SelectSlot(slot));
+                desk.act(command);
+                ui.close();
+            }
+        }
+    });
     // Where a click in the viewport selected it.
     let shown = Id::unique("slot in sight");
     if is_selected && ui.memory(|memory| memory.data.get_temp::<usize>(shown)) != Some(slot) {
         item.scroll_to_me(None);
         ui.memory_mut(|memory| memory.data.insert_temp(shown, slot));
     }
-    if item.on_hover_text(label).clicked() {
+    if !item.on_hover_text(label).clicked() {
+    } else if widgets::is_beside_others(ui) && slot != desk.shared.selection.slot {
+        desk.shared.selection.choose_also(slot);
+    } else {
+        desk.shared.selection.objects.clear();
         desk.actions.push(Action::SelectSlot(slot));
     }
 }
@@ -181,7 +213,7 @@ fn metal(ui: &mut Ui, desk: &mut Desk, material: &mut MaterialSettings) {
         let help = "The same metal by two colours, seen head-on and towards the edge, to pick as you like.";
         if widgets::pressed(ui, "Edit as colours", help) {
             *material = material.by_colors();
-            desk.edits.note("Edit the metal as colours", "");
+            desk.edits.did("Edit the metal as colours");
         }
         return;
     }
@@ -189,7 +221,7 @@ fn metal(ui: &mut Ui, desk: &mut Desk, material: &mut MaterialSettings) {
         for conductor in Conductor::all().filter(|conductor| *conductor != Conductor::Custom) {
             if widgets::entry(ui, conductor.name(), "") {
                 *material = material.by_measured(conductor);
-                desk.edits.note(format!("Use measured {}", conductor.name()), "");
+                desk.edits.did(format!("Use measured {}", conductor.name()));
             }
         }
     });
@@ -232,7 +264,9 @@ fn show_parameter(ui: &mut Ui, desk: &mut Desk, parameter: &Parameter, material:
     };
     let row = ui.add_enabled_ui(idle.is_none(), |ui| {
         let beside = target.is_some().then_some(&mut slot as &mut dyn FnMut(&mut Ui));
-        parameter_row::edit(ui, parameter, &parameter.full_name(), material, beside)
+        let preset = PRESETS.iter().find(|preset| preset.name == material.name);
+        let default = preset.map_or_else(|| parameter.default_value(), |preset| parameter.get(preset));
+        parameter_row::edit_from(ui, parameter, &parameter.full_name(), material, (default, beside))
     });
     if pressed.get() {
         desk.actions.extend(empty.map(Action::ChooseTexture));

@@ -134,7 +134,7 @@ fn menu(ui: &mut Ui, desk: &mut Desk, target: TextureTarget, material: &mut Mate
         let why_not = "It is the model's; its switch leaves it out";
         if widgets::pressed_if(ui, is_own, "Remove", help, why_not) {
             material.user_textures.set(target, None);
-            desk.edits.note(format!("Remove the {of_target} texture"), "");
+            desk.edits.did(format!("Remove the {of_target} texture"));
         }
     });
 }

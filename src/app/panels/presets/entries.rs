@@ -6,7 +6,8 @@ use super::*;
 use crate::app::kit::tile::Tile;
 use crate::app::services::compare::Rival;
 use crate::app::services::pictures::Part;
-use crate::app::services::shelves::{KeptShelves, environment_key, environment_label, preset_key};
+use crate::app::services::viewing::Pick;
+use crate::app::services::shelves::{environment_key, environment_label, preset_key};
 use crate::document::MaterialSettings;
 use crate::render::thumbnails::Subject;
 use crate::scene::environment::EnvironmentSource;
@@ -88,8 +89,8 @@ impl Entry {
         Self::new(desk, key, label, EntryKind::Environment(source))
     }
 
-    /// Whether its name, its group, its tags and the words of its look have each word that is searched for, in lower case.
-    pub fn is_wanted(&self, search: &str, group: &str, kept: &KeptShelves) -> bool {
+    /// Whether its name, its group and the words of its look have each word that is searched for, in lower case.
+    pub fn is_wanted(&self, search: &str, group: &str) -> bool {
         if search.is_empty() {
             return true;
         }
@@ -97,7 +98,7 @@ impl Entry {
             EntryKind::Material(material) => material.look_words().join(" "),
             _ => String::new(),
         };
-        let texts = [&self.name, group, &kept.tags_of(&self.key), &look].map(str::to_lowercase);
+        let texts = [&self.name, group, &look].map(str::to_lowercase);
         search
             .split_whitespace()
             .all(|word| texts.iter().any(|text| text.contains(word)))
@@ -118,7 +119,7 @@ impl Entry {
     }
 
     /// Shows it, and takes what the user does with it.
-    pub fn show(&self, ui: &mut Ui, desk: &mut Desk, layout: Layout, tagging: &mut Option<(String, String)>) {
+    pub fn show(&self, ui: &mut Ui, desk: &mut Desk, layout: Layout) {
         let (color, is_current) = match &self.kind {
             EntryKind::Material(material) => (widgets::shown(material.base_color), **material == desk.material()),
             EntryKind::Environment(source) => {
@@ -146,12 +147,17 @@ impl Entry {
         };
         let is_favourite = desk.shared.shelves.kept.favourites.contains(&self.key);
         let response = tile.show(ui, layout, (&menu_name, is_favourite), |ui| {
-            self.menu(ui, desk, tagging)
+            self.menu(ui, desk)
         });
         match &self.kind {
             EntryKind::Material(material) => {
                 if response.clicked() {
-                    desk.actions.push(Action::UseMaterial(material.clone()));
+                    let picks = &mut desk.shared.viewing.picks;
+                    let is_rival = picks.take_if(|pick| *pick == Pick::Rival).is_some();
+                    desk.actions.push(match is_rival {
+                        true => Action::CompareWith(Rival::Material(material.clone())),
+                        false => Action::UseMaterial(material.clone()),
+                    });
                 }
                 // Onto an object in the viewport, or a material in the tree of the scene.
                 response.dnd_set_drag_payload((**material).clone());
@@ -169,7 +175,7 @@ impl Entry {
     }
 
     /// What else can be done with it.
-    fn menu(&self, ui: &mut Ui, desk: &mut Desk, tagging: &mut Option<(String, String)>) {
+    fn menu(&self, ui: &mut Ui, desk: &mut Desk) {
         let kept = &mut desk.shared.shelves.kept;
         let is_favourite = kept.favourites.contains(&self.key);
         let label = if is_favourite {
@@ -179,9 +185,6 @@ impl Entry {
         };
         if widgets::pressed(ui, label, "Favourites stand at the top.") {
             kept.favour(&self.key);
-        }
-        if widgets::pressed(ui, "Tags…", "Words to find it by.") {
-            *tagging = Some((self.key.clone(), kept.tags_of(&self.key)));
         }
         if let EntryKind::Material(material) = &self.kind {
             let help = "Shows it beside the material that is edited.";
@@ -218,7 +221,7 @@ fn usage(ui: &mut Ui, desk: &mut Desk, material: &MaterialSettings) {
     let why_not = "No material of the scene has its name.";
     if widgets::pressed_if(ui, !users.is_empty(), text, help, why_not) {
         desk.actions.push(Action::SelectSlots(users));
-        desk.actions.push(Action::Reveal(Pane::Scene));
+        desk.actions.push(Action::Reveal(Pane::Material));
         ui.close();
     }
     let edited = desk.material();

@@ -56,21 +56,11 @@ struct MeanUse {
 type Apply = fn(&mut Slot, &TextureMean);
 
 /// Textures of which the mean is taken: where they stand, what the report says, what the mean does.
-const MEANS: [(&str, &str, Apply); 4] = [
-    (
-        "/extensions/KHR_materials_specular/specularTexture",
-        "a specular texture, by its mean",
-        |slot, mean| slot.multiply("specular.weight", [mean.codes[3]; 3]),
-    ),
+const MEANS: [(&str, &str, Apply); 2] = [
     (
         "/extensions/KHR_materials_specular/specularColorTexture",
         SPECULAR_COLOR,
         |slot, mean| slot.multiply("specular.color", mean.linear),
-    ),
-    (
-        "/extensions/KHR_materials_transmission/transmissionTexture",
-        "a transmission texture, by its mean",
-        |slot, mean| slot.multiply("transmission.weight", [mean.codes[0]; 3]),
     ),
     (
         "/extensions/KHR_materials_anisotropy/anisotropyTexture",
@@ -549,6 +539,9 @@ fn make_metal(slot: &mut Slot) {
     let mix = |own: f32, other: f32| other + metalness * (own - other);
     slot.set_color("base.color", [0, 1, 2].map(|i| mix(own[i], converted.base_color[i])));
     slot.set("base.metalness", mix(1.0, converted.metalness));
+    // A texture of the weight is the metal's then.
+    let is_varied = slot.texture(TextureTarget::Specular).is_some();
+    slot.set("specular.on_metal", f32::from(u8::from(is_varied)));
     slot.set("specular.ior", 1.5);
     slot.set("specular.weight", 1.0);
     slot.set("specular.color", 1.0);
@@ -559,7 +552,7 @@ fn make_unlit(slot: &mut Slot) {
     slot.is_unlit = true;
     slot.set_color("emission.color", slot.color("base.color"));
     *slot.texture_mut(TextureTarget::Emission) = slot.texture(TextureTarget::BaseColor);
-    for target in [TextureTarget::Roughness, TextureTarget::Normal] {
+    for target in [TextureTarget::Roughness, TextureTarget::Normal, TextureTarget::Specular] {
         *slot.texture_mut(target) = None;
     }
     slot.set("emission.strength", 1.0);

@@ -40,7 +40,7 @@ pub const GLTF_PARAMETERS: &[FileParameter] = file_parameters! {
     }
     "/extensions/KHR_materials_specular/" {
         "specularFactor" = "1" "0.25" => to "specular.weight, without metals";
-        "specularTexture" TEXTURE => to "specular.weight": "by its mean";
+        "specularTexture" TEXTURE => to "specular.weight_texture";
         "specularColorFactor" = "[1, 1, 1]" "[2, 0.5, 0.25]" => to "specular.color, without metals": "at most 1 in what transmits";
         "specularColorTexture" TEXTURE => to "specular.color": "by its mean";
     }
@@ -71,7 +71,7 @@ pub const GLTF_PARAMETERS: &[FileParameter] = file_parameters! {
     }
     "/extensions/KHR_materials_transmission/" {
         "transmissionFactor" = "0" "0.25" => to "transmission.weight";
-        "transmissionTexture" TEXTURE => to "transmission.weight": "by its mean";
+        "transmissionTexture" TEXTURE => to "transmission.weight_texture";
     }
     "/extensions/KHR_materials_volume/" {
         "thicknessFactor" "0" => to "nothing, solids are as thick as they are": "0 is a thin wall, which bends nothing";

@@ -28,24 +28,24 @@ impl Walls {
     }
 }
 
-/// Bright and warm, so that what reflects has something to reflect.
+/// Warm, and not much darker than the lamps: gold and copper have their colours where they reflect either.
 const PRODUCT_WALLS: Walls = Walls {
-    floor: [0.575, 0.529, 0.471],
-    wall: [0.414, 0.385, 0.345],
-    ceiling: [0.391, 0.391, 0.402],
+    floor: [0.495, 0.43, 0.36],
+    wall: [0.395, 0.347, 0.291],
+    ceiling: [0.355, 0.33, 0.3],
     bend: 0.25,
 };
 const PRODUCT: [SoftBox; 5] = [
     // From the left above, in front: large and warm, shapes the object.
-    soft_box([-2.6, 2.3, 2.2], [2.1, 1.9], [7.5, 0.4, 0.6], [1.0, 0.92, 0.8]),
-    // From the right: large and cool, opens the shadows.
-    soft_box([3.5, 1.0, 1.2], [1.8, 2.2], [2.0, 0.35, 0.7], [0.8, 0.9, 1.0]),
+    soft_box([-2.6, 2.3, 2.2], [2.1, 1.9], [4.3, 0.4, 0.6], [1.0, 0.815, 0.6]),
+    // From the right: large and less warm, opens the shadows.
+    soft_box([3.5, 1.0, 1.2], [1.8, 2.2], [1.15, 0.35, 0.7], [1.0, 0.895, 0.775]),
     // Above, a little behind: draws the upper edges.
-    soft_box([0.3, 3.8, -1.2], [2.4, 1.0], [4.1, 0.5, 0.3], [1.0, 0.98, 0.95]),
-    // Behind on the right, narrow and cool.
-    soft_box([2.9, 1.2, -2.6], [0.5, 2.2], [8.0, 0.5, 0.2], [0.88, 0.94, 1.0]),
+    soft_box([0.3, 3.8, -1.2], [2.4, 1.0], [2.35, 0.5, 0.3], [1.0, 0.89, 0.77]),
+    // Behind on the right, narrow and white.
+    soft_box([2.9, 1.2, -2.6], [0.5, 2.2], [4.6, 0.5, 0.2], [0.95, 0.95, 0.97]),
     // Behind on the left, narrow and warm.
-    soft_box([-3.4, 0.9, -2.0], [0.4, 2.0], [5.8, 0.5, 0.2], [1.0, 0.9, 0.78]),
+    soft_box([-3.4, 0.9, -2.0], [0.4, 2.0], [3.3, 0.5, 0.2], [1.0, 0.82, 0.62]),
 ];
 
 /// Dim, so that the lamps alone shape the object.
@@ -113,7 +113,7 @@ const WAREHOUSE: [SoftBox; 8] = [
     soft_box([4.2, 0.3, 0.4], [1.6, 1.5], [1.3, 0.7, 0.15], [1.0, 0.72, 0.45]),
 ];
 
-/// A photographer's table: large warm and cool soft boxes in a bright room. 1024 × 512.
+/// A photographer's table: large warm soft boxes in a warm room. 1024 × 512.
 pub fn product() -> Result<Environment, MapError> {
     PRODUCT_WALLS.with("product", &PRODUCT)
 }

@@ -117,7 +117,8 @@ pub fn material_json(material: &MaterialSettings, surface: &Surface, textures: &
     {
         let [key, strength] = row.keys();
         let texture = On::of_key(key, "_texture").and_then(|target| textures.of[target as usize].clone());
-        let is_there = !part(row).starts_with("/extensions") || json.pointer(part(row)).is_some();
+        let has_weight = key == "specular.weight_texture" && surface.specular_weight > 0.0;
+        let is_there = !part(row).starts_with("/extensions") || json.pointer(part(row)).is_some() || has_weight;
         let Some(mut texture) = texture.filter(|_| is_there) else {
             continue;
         };

@@ -1,7 +1,6 @@
 //! MaterialX 1.39: surfaces of OpenPBR, or Autodesk's Standard Surface.
 
 mod artistic;
-mod bake;
 mod graph;
 mod images;
 mod include;

@@ -1,11 +1,10 @@
 //! Documents of MaterialX, read: the surfaces of several models with one value for each input. Images are taken by their mean.
-//! What a graph computes is computed ([`super::graph`]) or baked ([`super::bake`]), else named in the report.
+//! What a graph computes is computed ([`super::graph`]), else named in the report.
 
 use std::path::Path;
 
 use roxmltree::{Document, Node};
 
-use super::bake::Baker;
 use super::graph::{Shader, Unknown, Worth, child, shaders, source_of, worth};
 use super::images::Images;
 use super::include::whole_text;
@@ -46,10 +45,9 @@ pub(in crate::store::exchange) fn read_document(
 ) -> Result<Subject, ExchangeError> {
     let mut subject = Subject::default();
     let mut refused = Vec::new();
-    let mut baker = Baker::of(path);
     let images = Images::in_folder(path.parent().unwrap_or(Path::new(".")), &options.loading);
     for shader in shaders(document.root_element()) {
-        match read_surface(&shader, &images, &mut baker) {
+        match read_surface(&shader, &images) {
             Ok((surface, losses)) => {
                 let (material, losses) = exact_or_shown(&surface, losses, &shader, &options);
                 subject.materials.push(material);
@@ -137,7 +135,7 @@ fn shown_by(material: &MaterialSettings, is_standard: bool) -> Option<Surface> {
     let shader = shaders(document.root_element()).into_iter().next()?;
     let (nowhere, loading) = (Path::new(""), Loading::default());
     let images = Images::in_folder(nowhere, &loading);
-    let (surface, _) = read_surface(&shader, &images, &mut Baker::of(nowhere)).ok()?;
+    let (surface, _) = read_surface(&shader, &images).ok()?;
     Some(surface)
 }
 
@@ -151,18 +149,16 @@ pub(in crate::store::exchange) fn is_near(a: &Surface, b: &Surface) -> bool {
     PARAMETERS.iter().all(are_near)
 }
 
-fn read_surface(
-    shader: &Shader<'_>,
-    images: &Images<'_>,
-    baker: &mut Baker<'_>,
-) -> Result<(Surface, Vec<Entry>), String> {
+fn read_surface(shader: &Shader<'_>, images: &Images<'_>) -> Result<(Surface, Vec<Entry>), String> {
     let named = shader.material.unwrap_or(shader.node);
-    let own_name = named.attribute("name").unwrap_or("material");
-    let name = named.attribute("uiname").unwrap_or(own_name);
+    let name = named
+        .attribute("uiname")
+        .or(named.attribute("name"))
+        .unwrap_or("material");
     let node = shader.node.tag_name().name();
     let kind = SurfaceKind::named(node).ok_or_else(|| format!("{name} is a {node}"))?;
     let mut inputs = kind.unset();
-    let (turn_deg, textures) = read_inputs(shader, images, &mut inputs, &mut |input| baker.mean(own_name, input));
+    let (turn_deg, textures) = read_inputs(shader, images, &mut inputs);
     inputs
         .losses
         .extend(shader.maker.into_iter().flat_map(others_of_material));
@@ -189,13 +185,11 @@ fn others_of_material<'a>(material: Node<'a, 'a>) -> impl Iterator<Item = Entry>
     others.map(|name| Entry::dropped(name, "of a material its surface alone is read"))
 }
 
-/// Fills in the inputs that have a value, in any way, and gives the turn of the tangent in degrees and the textures. `baked` is asked for
-/// what is not computed here.
+/// Fills in the inputs that have a value, in any way, and gives the turn of the tangent in degrees and the textures.
 fn read_inputs(
     shader: &Shader<'_>,
     images: &Images<'_>,
     inputs: &mut Inputs,
-    baked: &mut dyn FnMut(&str) -> Result<[f32; 3], String>,
 ) -> (f32, Vec<(TextureTarget, UserTexture, f32)>) {
     let (mut turn_deg, mut textures) = (0.0, Vec::new());
     for input in shader.node.children().filter(|node| node.has_tag_name("input")) {
@@ -263,17 +257,10 @@ fn read_inputs(
                 inputs.set(name, value);
             }
             Ok(None) => {}
-            Err(Unknown::Computed(kind)) => match baked(name) {
-                Ok(mean) => {
-                    let detail = format!("what a graph computes ({kind}): its mean, baked by MaterialX");
-                    inputs.losses.push(Entry::approximated(name, detail, None));
-                    inputs.set(name, mean);
-                }
-                Err(why) => {
-                    let detail = format!("what a graph computes ({kind}); {why}");
-                    inputs.losses.push(Entry::dropped(name, detail));
-                }
-            },
+            Err(Unknown::Computed(kind)) => {
+                let detail = format!("what a graph computes ({kind})");
+                inputs.losses.push(Entry::dropped(name, detail));
+            }
             Err(Unknown::Missing(what)) => inputs.losses.push(Entry::dropped(name, what)),
         }
     }
@@ -312,8 +299,10 @@ pub(super) fn normal_target(name: &str) -> Option<TextureTarget> {
 /// What an image on an input varies here.
 pub(super) fn target_of(row: &FileParameter) -> Option<TextureTarget> {
     let target = TextureTarget::of_key(row.keys()[0], "").filter(|_| row.per == 1.0)?;
-    // An opacity that holds in one mode alone is a number.
-    (target != TextureTarget::Opacity || row.layer.is_empty()).then_some(target)
+    // An opacity that holds in one mode alone is a number, as is what has another scale or is an opacity too.
+    let is_number = target == TextureTarget::Opacity && !row.layer.is_empty();
+    let is_converted = row.range == Some([0.0, 0.5]) || row.keys()[1].contains("geometry.");
+    (!is_number && !is_converted).then_some(target)
 }
 
 /// The turn of a tangent by a node `rotate3d`, degrees.

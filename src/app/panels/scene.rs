@@ -1,40 +1,53 @@
 //! The objects of the model, and the ground: shown or hidden, chosen, renamed.
 
 use super::*;
+use crate::app::kit::keys;
+use crate::app::services::selection::Thing;
 
-/// The lines that are seen at once: more are scrolled to.
-const SHOWN: f32 = 12.0;
+/// The list.
+#[derive(Default)]
+pub struct ScenePanel {
+    search: String,
+    /// The object that is being given another name, and what was typed so far.
+    renaming: Option<(usize, String)>,
+}
 
-pub fn show(ui: &mut Ui, desk: &mut Desk, panel: &mut ScenePanel) {
-    let Some(count) = desk.scene().map(|scene| scene.model.objects.len()) else {
-        return;
-    };
-    let height = SHOWN * (theme::ROW_HEIGHT + ui.spacing().item_spacing.y);
-    widgets::group(ui, "Objects", |ui| {
-        let area = ScrollArea::vertical().max_height(height).id_salt("objects");
-        area.show(ui, |ui| {
+impl Panel for ScenePanel {
+    fn show(&mut self, ui: &mut Ui, desk: &mut Desk) {
+        desk.shared.selection.is_shown = true;
+        keys::search_field(ui, &mut self.search, "Search the scene", "Search the scene");
+        ui.add_space(0.5 * theme::GAP);
+        let wanted = self.search.to_lowercase();
+        let is_wanted = |name: &str| name.to_lowercase().contains(&wanted);
+        widgets::comes_and_goes(ui, |ui| {
+            let count = desk.scene().map_or(0, |scene| scene.model.objects.len());
             for number in 0..count {
                 let name = desk.object_name(number).unwrap_or_default();
-                if panel.is_wanted(&name) {
-                    ui.push_id(("object", number), |ui| object(ui, desk, panel, number, &name, count));
+                if is_wanted(&name) {
+                    ui.push_id(("object", number), |ui| self.object(ui, desk, number, &name, count));
                 }
             }
-            if panel.is_wanted("Ground") {
+            if is_wanted("Ground") {
                 ui.push_id("ground", |ui| ground(ui, desk));
             }
         });
-    });
+    }
 }
 
-fn object(ui: &mut Ui, desk: &mut Desk, panel: &mut ScenePanel, number: usize, name: &str, count: usize) {
-    let what = Renamed::Thing(Thing::Object(number));
-    if let Some(renamed) = panel.new_name(ui, &what) {
-        if let Some(renamed) = renamed {
-            desk.document.object_names.insert(number, renamed);
-            desk.edits.note("Rename an object", "");
+impl ScenePanel {
+    fn object(&mut self, ui: &mut Ui, desk: &mut Desk, number: usize, name: &str, count: usize) {
+        if let Some((of, typed)) = &mut self.renaming
+            && *of == number
+        {
+            if let Some(chosen) = widgets::name_field(ui, typed) {
+                self.renaming = None;
+                if let Some(renamed) = chosen {
+                    desk.document.object_names.insert(number, renamed);
+                    desk.edits.did("Rename an object");
+                }
+            }
+            return;
         }
-        return;
-    }
     let is_hidden = desk.document.hidden_objects.contains(&number);
     ui.horizontal(|ui| {
         if let Some(verb) = eye(ui, name, is_hidden) {
@@ -45,21 +58,21 @@ fn object(ui: &mut Ui, desk: &mut Desk, panel: &mut ScenePanel, number: usize, n
                 hidden.push(number);
                 hidden.sort_unstable();
             }
-            desk.edits.note(format!("{verb} {name}"), "");
+            desk.edits.did(format!("{verb} {name}"));
         }
         let is_chosen = desk.shared.selection.objects.contains(&number);
-        let shown = line(ui, "Object", name, is_chosen, is_hidden);
-        light_up(ui, desk, &shown, Thing::Object(number));
+        let shown = line(ui, name, is_chosen, is_hidden);
+        desk.light_up(ui, &shown, Thing::Object(number));
         if shown.clicked() {
-            choose(desk, number, is_beside_others(ui));
+            choose(desk, number, widgets::is_beside_others(ui));
         }
         shown.context_menu(|ui| {
             if widgets::entry(ui, "Rename", "") {
-                panel.rename(what, name);
+                self.renaming = Some((number, name.to_owned()));
             }
             if widgets::entry(ui, "Isolate", "Hides all other objects") {
                 desk.document.hidden_objects = (0..count).filter(|other| *other != number).collect();
-                desk.edits.note(format!("Isolate {name}"), "");
+                desk.edits.did(format!("Isolate {name}"));
             }
             if widgets::entry(ui, "Focus", Command::FrameSelected.help()) {
                 choose(desk, number, false);
@@ -72,6 +85,7 @@ fn object(ui: &mut Ui, desk: &mut Desk, panel: &mut ScenePanel, number: usize, n
             }
         });
     });
+}
 }
 
 /// Chooses an object, and with it the material that it shows.
@@ -98,7 +112,7 @@ fn ground(ui: &mut Ui, desk: &mut Desk) {
             desk.document.ground = is_hidden;
             desk.edits.note("Ground", "scene.ground");
         }
-        let shown = line(ui, "Object", "Ground", false, is_hidden);
+        let shown = line(ui, "Ground", false, is_hidden);
         if shown.on_hover_text("Shows the ground's parameters").clicked() {
             desk.actions.push(Action::Reveal(Pane::Lighting));
         }
@@ -114,4 +128,17 @@ fn eye(ui: &mut Ui, name: &str, is_hidden: bool) -> Option<&'static str> {
     };
     let is_pressed = icons::button(ui, icon, &format!("{verb} {name}"), verb).clicked();
     is_pressed.then_some(verb)
+}
+
+/// A line over the width that is left; a faint one is not shown in the image.
+fn line(ui: &mut Ui, name: &str, is_selected: bool, is_faint: bool) -> Response {
+    let size = vec2(ui.available_width(), theme::ROW_HEIGHT);
+    let text = RichText::new(name);
+    let text = if is_faint { text.weak() } else { text };
+    // At the left, as lines of a tree are.
+    let button = Button::selectable(is_selected, (text, Atom::grow()))
+        .truncate()
+        .sense(Sense::click_and_drag());
+    let shown = ui.add_sized(size, button.min_size(size));
+    shown.accessible_name(format!("Object {name}"))
 }
