@@ -268,7 +268,7 @@ fn undivided(film: &Film) -> Noisy {
     let (mut film, counts) = with_all_guides(film);
     for pixel in 0..film.pixel_count() {
         let all = film.sums(pixel);
-        film.set_halves(pixel, &[all, HalfSums::default()]);
+        film.pixels[pixel] = [all, HalfSums::default()];
     }
     Noisy::of_samples(&film, |pixel| counts[pixel], None)
 }
@@ -484,9 +484,7 @@ const PATIENCE: Duration = Duration::from_secs(30);
 /// Relative mean squared error against a reference, whose noise is taken out by its halves.
 fn relative_error(image: &Image, reference: &Film) -> f64 {
     let of_pixel = |pixel: usize| -> f64 {
-        let [even, odd] = reference
-            .halves(pixel)
-            .map(|half| half.color.map(|sum| sum / half.samples));
+        let [even, odd] = reference.pixels[pixel].map(|half| half.color.map(|sum| sum / half.samples));
         let of_channel = |c: usize| {
             let x = f64::from(image.pixels[pixel][c]);
             let mean = 0.5 * (even[c] + odd[c]);

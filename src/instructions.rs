@@ -73,9 +73,7 @@ pub fn instruction_set() -> &'static str {
 
 /// The names of the instruction sets that this processor has.
 fn available() -> String {
-    let names = Instructions::ALL.iter().filter(|choice| **choice != Instructions::Auto);
-    let names = names
-        .filter(|choice| choice.level().is_some())
-        .map(|choice| choice.name());
+    let is_here = |choice: &&Instructions| **choice != Instructions::Auto && choice.level().is_some();
+    let names = Instructions::ALL.iter().filter(is_here).map(|choice| choice.name());
     names.collect::<Vec<_>>().join(" or ")
 }

@@ -78,8 +78,7 @@ fn message(error: &anyhow::Error) -> String {
 
 fn run(arguments: Arguments) -> anyhow::Result<()> {
     arguments.instructions.force()?;
-    arguments.ray_queries.choose();
-    arguments.denoise_device.choose();
+    glossmith::render::MachineOptions::set(arguments.ray_queries, arguments.denoise_device);
     if arguments.allow_outside {
         glossmith::import::limits::allow_everything();
     }

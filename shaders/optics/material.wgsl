@@ -68,10 +68,7 @@ fn follow_coat(material: ptr<function, Material>) {
     }
 }
 
-fn has_film_table(material: Material) -> bool {
-    return (material.has_rough_tables & HOLDS_FILM) != 0u;
-}
-
+// GGX's roughness under a coat of this weight.
 fn roughness_under_coat(material: Material, roughness: f32, weight: f32) -> f32 {
     let square = roughness * roughness;
     return roughness + (sqrt(sqrt(min(square * square + material.coat_blur, 1.0))) - roughness) * weight;
@@ -104,10 +101,6 @@ fn material_film_terms(material: Material, is_within: bool, outside: f32) -> Fil
 // The index before the specular interface.
 fn ior_of_coat(material: Material) -> f32 {
     return select(1.0, 1.0 + (material.coat_ior - 1.0) * material.coat_weight, PLAN_COAT && has_flag(material, COATS_BASE));
-}
-
-fn holds_integrals(material: Material) -> bool {
-    return PLAN_ROUGH_TABLES && (material.has_rough_tables & HOLDS_INTEGRALS) != 0u;
 }
 
 // Whether the material's tables extend over roughness or azimuth.

@@ -15,8 +15,8 @@ fn interface_gain(material: Material, surface: Surface, shape: LobeShape, is_ref
     var kept = vec3f();
     for (var channel = 0u; channel < select(1u, 3u, has_channels); channel++) {
         let energies = kept_energies(material, surface, shape, channel);
-        let shares = select(energies.yz, vec2f(1.0, energies.w), is_reflected);
-        let energy = select(shares.x, shares.y, is_within(material, surface));
+        let refracted = select(energies.y, energies.z, is_within(material, surface));
+        let energy = select(refracted, energies.w, is_reflected);
         kept = select(kept, vec3f(energy), vec3u(0u, 1u, 2u) >= vec3u(channel));
     }
     return 1.0 / kept;
@@ -35,18 +35,24 @@ fn scattered_again(
     } else if shows_film(terms) {
         head_on = fresnel_parts(terms, 1.0).metal;
     }
-    // Of the light that meets facets again a part leaves each time; those it meets at a slant reflect more.
-    let leaves = sqrt(kept);
-    let slant = 0.45 - 0.2 * view_cosine(surface);
-    let mean = mix(head_on, terms.metal_tint, kept * leaves * slant);
-    let gain = 1.0 + mean * leaves / (1.0 - mean * (1.0 - leaves)) * ((1.0 - kept) / kept);
+    let gain = facet_gain(head_on, terms.metal_tint, kept, view_cosine(surface));
     if !has_parts(terms) {
         return once * mix(WHITE, gain, terms.metalness);
     }
     let parts = fresnel_parts(terms, cosine);
-    // The refracting share of a dielectric is clear; the rest lies over a base.
-    let clear = mix(WHITE, interface_gain(material, surface, shape, true), material.transmission_weight) * parts.dielectric;
-    return mix(clear, parts.metal * gain, terms.metalness);
+    // The refracting share of a dielectric is clear; the rest lies over a base. An index of 1 lets all else go straight on.
+    var clear = facet_gain(vec3f(fresnel_f0(terms.ior)), WHITE, kept, view_cosine(surface));
+    if is_within(material, surface) {
+        clear = interface_gain(material, surface, shape, true);
+    }
+    let dielectric = parts.dielectric * mix(WHITE, clear, material.transmission_weight * f32(material.ior != 1.0));
+    return mix(dielectric, parts.metal * gain, terms.metalness);
+}
+
+fn facet_gain(head_on: vec3f, grazing: vec3f, kept: f32, cosine: f32) -> vec3f {
+    let leaves = sqrt(kept);
+    let mean = mix(head_on, grazing, kept * leaves * (0.45 - 0.2 * cosine));
+    return 1.0 + mean * leaves / (1.0 - mean * (1.0 - leaves)) * ((1.0 - kept) / kept);
 }
 
 fn kept_energies(material: Material, surface: Surface, shape: LobeShape, channel: u32) -> vec4f {

@@ -22,7 +22,13 @@ fn film_change_of_metal(terms: FresnelTerms, cosine: f32) -> vec3f {
     if !(terms.metalness > 0.0) {
         return vec3f();
     }
-    return film_on_metal(terms, max(cosine_in_coat(terms, cosine), LEAST_FILM_COSINE)) * terms.metal_tint;
+    let within = max(cosine_in_coat(terms, cosine), LEAST_FILM_COSINE);
+    let index = index_of_colors(terms.metal_f0, terms.edge_tint);
+    let behind = admittances(within, index[0], index[1]);
+    let scale = entered(terms, 1.0, within, behind) / max(entered(terms, 0.0, within, behind), vec3f(FILM_TINY));
+    let reflected = fresnel_metal(terms.metal_f0, terms.edge_tint, within);
+    let lost = 1.0 - reflected;
+    return (saturate((lost - lost * scale) * terms.film.weight + reflected) - reflected) * terms.metal_tint;
 }
 
 fn cosine_in_coat(terms: FresnelTerms, cosine: f32) -> f32 {
@@ -43,16 +49,6 @@ fn film_on_conductor(terms: FresnelTerms, from_normal: f32, bare: vec3f) -> vec3
     let cosine = max(from_normal, LEAST_FILM_COSINE);
     let passed = entered(terms, 1.0, cosine, admittances(cosine, terms.eta, terms.k));
     return mix(bare, saturate(1.0 - passed), terms.film.weight);
-}
-
-fn film_on_metal(terms: FresnelTerms, cosine: f32) -> vec3f {
-    let index = index_of_colors(terms.metal_f0, terms.edge_tint);
-    let behind = admittances(cosine, index[0], index[1]);
-    let scale = entered(terms, 1.0, cosine, behind)
-        / max(entered(terms, 0.0, cosine, behind), vec3f(FILM_TINY));
-    let reflected = fresnel_metal(terms.metal_f0, terms.edge_tint, cosine);
-    let lost = 1.0 - reflected;
-    return saturate((lost - lost * scale) * terms.film.weight + reflected) - reflected;
 }
 
 // Eta and k of each channel.

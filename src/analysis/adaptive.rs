@@ -73,7 +73,7 @@ pub fn next_goals(film: &Film, samples: &[u32], round: Round) -> Vec<u32> {
         let sum = |of: &dyn Fn(usize) -> f64| finite_sum(rendered.iter().map(|pixel| of(*pixel)));
         let luminance = sum(&|pixel| film.luminance_of(pixel)) / pixels;
         // The tiles' smoothed variances need not add up to the estimate that decides the end.
-        let seen = sum(&|pixel| half_difference_variance(&film.halves(pixel)));
+        let seen = sum(&|pixel| half_difference_variance(&film.pixels[pixel]));
         let estimate = all(&|tile| tile.variance / tile.samples);
         let allowed = pixels * (noise * luminance).powi(2) * if seen > 0.0 { estimate / seen } else { 1.0 };
         let enough = bisect(bracket, |factor| {

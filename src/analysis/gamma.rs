@@ -5,7 +5,7 @@ const TERMS: usize = 100_000;
 
 /// Regularised upper incomplete gamma function Q(a, x): the share of Γ(a) = ∫ t^(a−1) e^−t dt from 0 to ∞ above x; a > 0, x
 /// ≥ 0.
-pub(super) fn upper_share(a: f64, x: f64) -> f64 {
+pub fn upper_share(a: f64, x: f64) -> f64 {
     let factor = (a * x.ln() - x - ln_gamma(a)).exp();
     if factor == 0.0 {
         return if x < a { 1.0 } else { 0.0 };

@@ -40,7 +40,7 @@ impl Distance {
 impl Halves {
     /// The halves of a film.
     pub fn of(film: &Film) -> Self {
-        let means = |pixel| film.halves(pixel).map(|half| half.luminance() / half.samples);
+        let means = |pixel: usize| film.pixels[pixel].map(|half| half.luminance() / half.samples);
         let (even, odd) = (0..film.pixel_count()).map(|pixel| means(pixel).into()).unzip();
         Self { even, odd }
     }

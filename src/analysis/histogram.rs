@@ -10,8 +10,10 @@ use crate::optics::vector::{Vec3, vec3};
 pub struct Histogram {
     low: f64,
     width: f64,
-    counts: Vec<u64>,
-    total: u64,
+    /// The counts, a bin each.
+    pub counts: Vec<u64>,
+    /// Values added, those outside included.
+    pub total: u64,
 }
 
 impl Histogram {
@@ -34,16 +36,6 @@ impl Histogram {
             let bin = (position as usize).min(self.counts.len() - 1);
             self.counts[bin] += 1;
         }
-    }
-
-    /// The counts, a bin each.
-    pub fn counts(&self) -> &[u64] {
-        &self.counts
-    }
-
-    /// Values added, those outside included.
-    pub fn total(&self) -> u64 {
-        self.total
     }
 
     /// (middle of the bin, density per unit of the value) for each bin.

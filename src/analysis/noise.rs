@@ -109,7 +109,7 @@ impl<'a> Band<'a> {
         let last = (rows.end + MAP_RADIUS).min(film.height as usize);
         let wider = || first * width..last * width;
         let halves: Vec<f64> = wider()
-            .map(|pixel| half_difference_variance(&film.halves(pixel)))
+            .map(|pixel| half_difference_variance(&film.pixels[pixel]))
             .collect();
         let spread: Vec<f64> = wider()
             .map(|pixel| finite_or_nan(film.variance_of_mean_at(pixel)))
@@ -133,7 +133,7 @@ impl<'a> Band<'a> {
     /// Expectation of a pixel's squared variance. The product of the two halves' own spreads is unbiased, as the halves are
     /// independent; the sequence's gain around the pixel converts it to variances of means.
     fn squared_variance(&self, place: usize) -> f64 {
-        let [even, odd] = self.film.halves(self.pixels.start + place);
+        let [even, odd] = self.film.pixels[self.pixels.start + place];
         if even.samples < 2.0 || odd.samples < 2.0 {
             // Too few for spreads: a normal distribution's fourth moment is three times its squared variance.
             let variance = self.halves[place];
@@ -310,7 +310,7 @@ impl TileSums {
         for pixel in film.grid().pixels_of(tile) {
             let n = film.samples_of(pixel);
             let (halves, spread) = (
-                half_difference_variance(&film.halves(pixel)),
+                half_difference_variance(&film.pixels[pixel]),
                 film.variance_of_mean_at(pixel),
             );
             sums.samples += n;

@@ -8,6 +8,7 @@ use crate::app::kit::keys;
 use crate::app::pane::Pane;
 use crate::app::services::compare::Rival;
 use crate::app::services::library::Change;
+use crate::app::services::workspaces;
 use crate::document::{ImportLobe, MaterialSettings};
 use crate::named::named;
 use crate::render::EngineChoice;
@@ -76,8 +77,8 @@ pub enum Action {
     /// Brings a panel to the front.
     Reveal(Pane),
     Close(Pane),
-    /// Shows the workspace of a name.
-    UseWorkspace(&'static str),
+    /// Changes the workspaces, or which is shown.
+    ChangeWorkspaces(workspaces::Change),
     /// Shows a parameter of the selected material and gives it the keys.
     Edit(&'static str),
     /// Which lobe the materials of models get that are opened from now on.

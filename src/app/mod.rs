@@ -437,7 +437,8 @@ impl App {
                 // With the viewport alone all of them can be brought back.
                 let is_open = |pane| !self.is_maximised && layout::is_open(&self.layout, pane);
                 let chosen = (self.shared.import_lobe, self.shared.rendering.engine);
-                let panels = (self.workspaces.current(), is_open);
+                let names: Vec<&str> = self.workspaces.names().collect();
+                let panels = ((names.as_slice(), self.workspaces.current()), is_open);
                 menu::bar(ui, &self.edits, &mut self.shared.recent, chosen, panels, actions);
             });
         egui::Panel::bottom("status")

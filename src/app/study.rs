@@ -142,7 +142,7 @@ impl<R: Clone + Send + Sync + 'static> StudyWorker<R> {
             _ => {}
         });
         widgets::comes_and_goes(ui, |ui| widgets::failure(ui, self.worker.failure()));
-        let is_stale = self.found().is_some() && self.is_stale(desk);
+        let is_stale = rests && self.found().is_some() && self.is_stale(desk);
         widgets::comes_and_goes(ui, |ui| {
             if is_stale {
                 widgets::note(ui, "Measured before the last changes.");

@@ -1,14 +1,14 @@
-//! The two workspaces: arrangements of the panels that are kept from one start to the next.
+//! Workspaces: arrangements of the panels under names, two of the program's and the user's own.
 
 use egui_tiles::Tree;
 use serde::{Deserialize, Serialize};
 
 use crate::app::layout::{self, Pane};
+use crate::app::services::workspaces::is_built_in;
+pub use crate::app::services::workspaces::{Change, LOOK, MEASURE};
 
-/// The workspace at the start: presets, material, light and camera around a large viewport.
-pub const LOOK: &str = "Look";
-/// The workspace of effects, races, checks, samples and errors.
-pub const MEASURE: &str = "Measure";
+/// Longest name of a workspace, characters: a row of them fits beside the menus.
+const NAME_MAX: usize = 16;
 
 /// An arrangement of the panels with its name.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -17,7 +17,7 @@ struct Workspace {
     layout: Tree<Pane>,
 }
 
-/// Both, and which is shown; the editor has the arrangement of that one.
+/// The workspaces, the program's own first; the editor shows the arrangement of the current one.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Workspaces {
@@ -32,8 +32,8 @@ impl Workspaces {
         let current = requested.unwrap_or(kept.current);
         let mut workspaces = Self { current, all };
         for Workspace { name, layout } in kept.all {
-            if let (Some(place), Some(layout)) = (workspaces.place(&name), layout::complete(layout)) {
-                workspaces.all[place].layout = layout;
+            if let Some(layout) = layout::complete(layout) {
+                workspaces.put(&name, layout);
             }
         }
         let place = workspaces.place(&workspaces.current).unwrap_or(0);
@@ -52,25 +52,57 @@ impl Workspaces {
         layout
     }
 
+    /// Keeps an arrangement under a name, in the place of one that has it.
+    fn put(&mut self, name: &str, layout: Tree<Pane>) {
+        match self.place(name) {
+            Some(place) => self.all[place].layout = layout,
+            None => self.all.push(Workspace {
+                name: name.to_owned(),
+                layout,
+            }),
+        }
+    }
+
     /// The name of the current one.
     pub fn current(&self) -> &str {
         &self.current
     }
 
+    /// The names of all, the program's own first.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.all.iter().map(|workspace| workspace.name.as_str())
+    }
+
     /// The same with this arrangement of the current one.
     pub fn with(&self, layout: Tree<Pane>) -> Self {
         let mut kept = self.clone();
-        if let Some(place) = self.place(&self.current) {
-            kept.all[place].layout = layout;
-        }
+        kept.put(&self.current, layout);
         kept
     }
 
-    /// Shows the workspace of a name; `layout` is the arrangement of the current one.
-    pub fn change(&mut self, name: &str, layout: &mut Tree<Pane>) {
-        if let Some(place) = self.place(name) {
-            *self = self.with(layout.clone());
-            *layout = self.shown(place);
+    /// Makes a change; `layout` is the arrangement of the current one.
+    pub fn change(&mut self, change: Change, layout: &mut Tree<Pane>) {
+        match change {
+            Change::Use(name) => {
+                if let Some(place) = self.place(&name) {
+                    *self = self.with(layout.clone());
+                    *layout = self.shown(place);
+                }
+            }
+            Change::Save(name) => {
+                let name: String = name.trim().chars().take(NAME_MAX).collect();
+                if !name.is_empty() {
+                    self.put(&name, layout.clone());
+                    self.current = name;
+                }
+            }
+            Change::Remove(name) if !is_built_in(&name) => {
+                self.all.retain(|workspace| workspace.name != name);
+                if self.current == name {
+                    *layout = self.shown(0);
+                }
+            }
+            Change::Remove(_) => {}
         }
     }
 
@@ -80,7 +112,7 @@ impl Workspaces {
     }
 }
 
-/// A workspace as it is at first.
+/// A workspace of the program's as it is at first; another name has the panels of *Look*.
 fn built_in(name: &str) -> Workspace {
     let layout = match name {
         MEASURE => layout::to_measure(),

@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use std::fmt::Debug;
 use std::mem::discriminant;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, MutexGuard};
+use std::sync::{Arc, Mutex};
 
 use super::error::AssetError;
 use crate::import;
@@ -14,7 +14,7 @@ use crate::import::{Budget, ModelError};
 use crate::panics::lock;
 use crate::scene::environment::{Environment, EnvironmentEncoding, EnvironmentSource};
 use crate::scene::ground::Ground;
-use crate::scene::texture::{Pack, TextureAssignment, Textures};
+use crate::scene::texture::{Pack, Textures, UserTexture, UserTextures};
 use crate::scene::{AreaShape, Geometry, Loading, Model, ModelOptions, ModelSource, Texture};
 
 /// Key of a model: source and options.
@@ -26,9 +26,9 @@ enum Key {
     Model(ModelKey),
     /// A texture map: file, and whether it is read as colours.
     Picture(PathBuf, bool),
-    /// A model's textures, and the user's own, each with whether its green channel is flipped.
-    Pack(ModelKey, Vec<((PathBuf, bool), bool)>),
-    Textures(ModelKey, Vec<TextureAssignment>),
+    /// A model's textures, and the user's own, each with whether it is read as colours and whether its green channel is flipped.
+    Pack(ModelKey, Vec<(PathBuf, bool, bool)>),
+    Textures(ModelKey, Vec<UserTextures>),
     /// Model, ground, area lights, hidden objects.
     Geometry(ModelKey, Ground, Vec<AreaShape>, Vec<usize>),
     Environment(EnvironmentSource, EnvironmentEncoding),
@@ -121,17 +121,18 @@ impl Assets {
         &self.loading
     }
 
-    /// A panic leaves consistent state behind: every change is a single assignment.
-    fn kept(&self) -> MutexGuard<'_, Cache> {
-        lock(&self.kept)
+    /// What is found in the cache, which is tidied then. A panic leaves consistent state behind: every change is a single
+    /// assignment.
+    fn had<V>(&self, find: impl FnOnce(&mut Cache) -> Result<Arc<V>, AssetError>) -> Result<Arc<V>, AssetError> {
+        let mut kept = lock(&self.kept);
+        let found = find(&mut kept)?;
+        kept.tidy();
+        Ok(found)
     }
 
     /// The model of a source, loaded if not cached.
     pub fn model(&self, source: &ModelSource, options: &ModelOptions) -> Result<Arc<Model>, AssetError> {
-        let mut kept = self.kept();
-        let model = kept.model((source.clone(), options.clone()), &self.loading)?;
-        kept.tidy();
-        Ok(model)
+        self.had(|kept| kept.model((source.clone(), options.clone()), &self.loading))
     }
 
     /// The packed textures of a source, with users' maps on its slots. Missing ones are reported.
@@ -139,12 +140,9 @@ impl Assets {
         &self,
         source: &ModelSource,
         options: &ModelOptions,
-        assigned: &[TextureAssignment],
+        assigned: &[UserTextures],
     ) -> Result<Arc<Textures>, AssetError> {
-        let mut kept = self.kept();
-        let textures = kept.textures((source.clone(), options.clone()), assigned, &self.loading)?;
-        kept.tidy();
-        Ok(textures)
+        self.had(|kept| kept.textures((source.clone(), options.clone()), assigned, &self.loading))
     }
 
     /// The geometry of a source, on a ground, with area lights, without the objects that are hidden.
@@ -156,11 +154,8 @@ impl Assets {
         area_lights: Vec<AreaShape>,
         hidden: Vec<usize>,
     ) -> Result<Arc<Geometry>, AssetError> {
-        let mut kept = self.kept();
         let of_model = (source.clone(), options.clone());
-        let geometry = kept.geometry(of_model, ground, area_lights, hidden, &self.loading)?;
-        kept.tidy();
-        Ok(geometry)
+        self.had(|kept| kept.geometry(of_model, ground, area_lights, hidden, &self.loading))
     }
 
     /// The environment of a source, loaded if not cached.
@@ -169,16 +164,13 @@ impl Assets {
         source: &EnvironmentSource,
         encoding: EnvironmentEncoding,
     ) -> Result<Arc<Environment>, AssetError> {
-        let mut kept = self.kept();
-        let environment = kept.environment(source.clone(), encoding, &self.loading)?;
-        kept.tidy();
-        Ok(environment)
+        self.had(|kept| kept.environment(source.clone(), encoding, &self.loading))
     }
 
     /// Inserts a model as if it had been loaded from `source`.
     pub fn keep_model(&self, source: ModelSource, model: Model) {
         let key = (source, ModelOptions::default());
-        let mut kept = self.kept();
+        let mut kept = lock(&self.kept);
         kept.entries.retain(|entry| match &entry.key {
             Key::Pack(of, _) | Key::Textures(of, _) | Key::Geometry(of, ..) => *of != key,
             _ => true,
@@ -189,7 +181,7 @@ impl Assets {
     /// The same for an environment.
     pub fn keep_environment(&self, source: EnvironmentSource, environment: Environment) {
         let key = Key::Environment(source, EnvironmentEncoding::default());
-        self.kept().put(key, environment);
+        lock(&self.kept).put(key, environment);
     }
 
     /// Reloads a model and an environment and drops all others. Returns them, and the model before. If either fails, nothing
@@ -205,7 +197,7 @@ impl Assets {
         let of_model = (source.clone(), options.clone());
         let model = fresh.model(of_model.clone(), &self.loading)?;
         let environment = fresh.environment(environment.clone(), encoding, &self.loading)?;
-        let mut kept = self.kept();
+        let mut kept = lock(&self.kept);
         fresh.memory = kept.memory;
         let before = kept.get(&Key::Model(of_model));
         *kept = fresh;
@@ -267,7 +259,7 @@ impl Cache {
     fn textures(
         &mut self,
         of: ModelKey,
-        assigned: &[TextureAssignment],
+        assigned: &[UserTextures],
         loading: &Loading,
     ) -> Result<Arc<Textures>, AssetError> {
         let key = Key::Textures(of.clone(), assigned.to_vec());
@@ -282,8 +274,15 @@ impl Cache {
     }
 
     /// The packed texels of a model's and users' maps, for any mapping.
-    fn pack(&mut self, of: ModelKey, model: &Model, assigned: &[TextureAssignment]) -> Arc<Pack> {
-        let mut own: Vec<_> = assigned.iter().map(|one| (one.picture(), one.is_flipped())).collect();
+    fn pack(&mut self, of: ModelKey, model: &Model, assigned: &[UserTextures]) -> Arc<Pack> {
+        let picture = |(target, texture): (_, &UserTexture)| {
+            (
+                texture.file.clone(),
+                texture.is_srgb(target),
+                texture.is_flipped(target),
+            )
+        };
+        let mut own: Vec<_> = assigned.iter().flat_map(UserTextures::iter).map(picture).collect();
         own.sort();
         own.dedup();
         let side_max = of.1.texture_side_max;

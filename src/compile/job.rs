@@ -9,7 +9,6 @@ use crate::document::effect::{Facts, Switch, plan, without_what_is_off};
 use crate::document::light_groups::emission_group;
 use crate::document::{
     AreaLight, Background, CameraSettings, Document, GroupName, MaterialSettings, RenderSettings, Shine,
-    texture_assignments,
 };
 use crate::import::light_profile;
 use crate::job::effect::EffectId;
@@ -35,7 +34,27 @@ const PARALLEL_MIN: f64 = 0.01;
 type Compiled = (Arc<Vec<Material<f32>>>, Arc<Vec<f32>>);
 
 /// Key of materials and tables: settings, textures, and what lights are.
-type MaterialsKey = (Vec<MaterialSettings>, Arc<Textures>, Emission);
+type MaterialsKey = (Vec<MaterialSettings>, Same<Textures>, Emission);
+
+/// Something that is equal to itself alone.
+#[derive(Debug)]
+struct Same<T>(Arc<T>);
+
+impl<T> PartialEq for Same<T> {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0)
+    }
+}
+
+/// What was made last of a key, made anew for another one.
+fn remembered<K: PartialEq, V: Clone>(last: &mut Option<(K, V)>, key: K, make: impl FnOnce(&K) -> V) -> V {
+    if let Some((_, made)) = last.as_ref().filter(|(of, _)| *of == key) {
+        return made.clone();
+    }
+    let made = make(&key);
+    *last = Some((key, made.clone()));
+    made
+}
 
 /// What lights are, by the slots of their materials.
 #[derive(Debug, PartialEq)]
@@ -80,36 +99,27 @@ impl Emission {
 }
 
 /// Key of the emitters' table: geometry, and the emission of each slot.
-type LightsKey = (Arc<Geometry>, Vec<f32>);
+type LightsKey = (Same<Geometry>, Vec<f32>);
 
 /// Start of a shadow catcher's table, and all tables with it at the end.
 type WithCatcher = (u32, Arc<Vec<f32>>);
 
 /// Key of a shadow catcher's table, with the tables before it.
-#[derive(Debug)]
+#[derive(Debug, PartialEq)]
 struct CatcherKey {
-    environment: Arc<Environment>,
+    environment: Same<Environment>,
     rotation_deg: f32,
     strength: f32,
     area_lights: Vec<NearLight>,
     height: f64,
     reflection: f32,
-    tables: Arc<Vec<f32>>,
-}
-
-impl CatcherKey {
-    fn is_same(&self, other: &Self) -> bool {
-        let numbers = |key: &Self| (key.rotation_deg, key.strength, key.height, key.reflection);
-        Arc::ptr_eq(&self.environment, &other.environment)
-            && Arc::ptr_eq(&self.tables, &other.tables)
-            && numbers(self) == numbers(other)
-            && self.area_lights == other.area_lights
-    }
+    tables: Same<Vec<f32>>,
 }
 
 /// Textures of a document with the materials of the model's slots.
 fn textures_of(document: &Document, slots: &[MaterialSettings], assets: &Assets) -> Result<Arc<Textures>, AssetError> {
-    assets.textures(&document.model, &document.import, &texture_assignments(slots))
+    let own: Vec<_> = slots.iter().map(|slot| slot.user_textures.clone()).collect();
+    assets.textures(&document.model, &document.import, &own)
 }
 
 /// Users' texture maps of a document's materials, readable or not.
@@ -188,7 +198,7 @@ impl Compiler {
             catcher,
             environment_rotation: cosine_and_sine(document.lighting.rotation_deg),
             environment_strength,
-            rounds_surfaces: geometry.is_coarse() && switches.get(EffectId::ShadowTerminator) != Switch::Off,
+            rounds_surfaces: geometry.is_coarse && switches.get(EffectId::ShadowTerminator) != Switch::Off,
             light_choice: LightChoice::new(&environment, environment_strength, &lights, sampled),
             bounces,
             roulette_floor: roulette_floor(&materials),
@@ -221,17 +231,12 @@ impl Compiler {
     }
 
     fn materials(&mut self, wanted: &[MaterialSettings], textures: &Arc<Textures>, emission: Emission) -> Compiled {
-        let is_known = |(of, looked_up, emitted): &MaterialsKey| {
-            of == wanted && Arc::ptr_eq(looked_up, textures) && *emitted == emission
-        };
-        if let Some((_, compiled)) = self.materials.as_ref().filter(|(key, _)| is_known(key)) {
-            return compiled.clone();
-        }
-        let (mut materials, mut tables) = compile_textured(wanted, &textures.slots);
-        emission.finish(&mut materials, &mut tables);
-        let compiled = (Arc::new(materials), Arc::new(tables));
-        self.materials = Some(((wanted.to_vec(), textures.clone(), emission), compiled.clone()));
-        compiled
+        let key = (wanted.to_vec(), Same(textures.clone()), emission);
+        remembered(&mut self.materials, key, |(wanted, textures, emission)| {
+            let (mut materials, mut tables) = compile_textured(wanted, &textures.0.slots);
+            emission.finish(&mut materials, &mut tables);
+            (Arc::new(materials), Arc::new(tables))
+        })
     }
 
     /// The tables with a shadow catcher's.
@@ -244,39 +249,31 @@ impl Compiler {
     ) -> WithCatcher {
         let lighting = &document.lighting;
         let key = CatcherKey {
-            environment: environment.clone(),
+            environment: Same(environment.clone()),
             rotation_deg: lighting.rotation_deg,
             strength: lighting.strength,
             area_lights: lighting.shining().map(AreaLight::seen_from_near).collect(),
             height: geometry.ground_height(),
             reflection: lighting.ground.reflection,
-            tables,
+            tables: Same(tables),
         };
-        if let Some((_, joined)) = self.catcher.as_ref().filter(|(of, _)| of.is_same(&key)) {
-            return joined.clone();
-        }
-        let light = CatcherLight {
-            environment,
-            rotation: cosine_and_sine(key.rotation_deg),
-            strength: key.strength.into(),
-            area_lights: &key.area_lights,
-        };
-        let mut joined = key.tables.to_vec();
-        let first = append_table(&mut joined, &catcher_table(&light, key.height, key.reflection));
-        let joined = (first, Arc::new(joined));
-        self.catcher = Some((key, joined.clone()));
-        joined
+        remembered(&mut self.catcher, key, |key| {
+            let light = CatcherLight {
+                environment,
+                rotation: cosine_and_sine(key.rotation_deg),
+                strength: key.strength.into(),
+                area_lights: &key.area_lights,
+            };
+            let mut joined = key.tables.0.to_vec();
+            let first = append_table(&mut joined, &catcher_table(&light, key.height, key.reflection));
+            (first, Arc::new(joined))
+        })
     }
 
     fn lights(&mut self, geometry: &Arc<Geometry>, materials: &[Material<f32>]) -> Arc<Lights> {
-        let emissions: Vec<_> = materials.iter().map(|material| material.light_luminance).collect();
-        let is_known = |(of, emitted): &LightsKey| Arc::ptr_eq(of, geometry) && *emitted == emissions;
-        if let Some((_, lights)) = self.lights.as_ref().filter(|(key, _)| is_known(key)) {
-            return lights.clone();
-        }
-        let lights = Arc::new(Lights::new(geometry, materials));
-        self.lights = Some(((geometry.clone(), emissions), lights.clone()));
-        lights
+        let emissions = materials.iter().map(|material| material.light_luminance).collect();
+        let make = |_: &LightsKey| Arc::new(Lights::new(geometry, materials));
+        remembered(&mut self.lights, (Same(geometry.clone()), emissions), make)
     }
 }
 

@@ -51,6 +51,25 @@ pub fn compile_textured(materials: &[MaterialSettings], textures: &[SlotTextures
     (compiled, tables)
 }
 
+macro_rules! as_edited {
+    ($($number:ident)*; $($color:ident)*) => {
+        /// The parameters that are the same as edited and as compiled.
+        fn as_edited(settings: &MaterialSettings) -> Material<f32> {
+            Material {
+                $($number: settings.$number,)*
+                $($color: Vec3::from_f32(settings.$color),)*
+                ..Material::default()
+            }
+        }
+    };
+}
+
+as_edited! {
+    metalness specular_weight ior anisotropy diffuse_roughness normal_strength transmission_weight coat_weight coat_roughness
+    coat_ior fuzz_weight fuzz_roughness film_weight film_ior;
+    specular_color eta k edge_tint coat_color fuzz_color
+}
+
 /// The plain numbers of a material, its tables still to be made.
 fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f32> {
     let uses = settings.textures;
@@ -70,42 +89,22 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
     let is_on_box = slot.on_box.contains(&true);
     let mut material = Material {
         base_color: Vec3::from_f32(settings.base_color) * settings.base_weight,
-        metalness: settings.metalness,
-        specular_color: Vec3::from_f32(settings.specular_color),
-        specular_weight: settings.specular_weight,
-        eta: Vec3::from_f32(settings.eta),
-        ior: settings.ior,
-        k: Vec3::from_f32(settings.k),
         roughness,
-        anisotropy: settings.anisotropy,
         transmission_tint: Vec3::splat(1.0),
-        transmission_weight: settings.transmission_weight,
         transmission_roughness: roughness + settings.transmission_roughness,
         rotation_rad: settings.rotation_deg.to_radians(),
         lobe: settings.lobe as u32,
         curve: settings.curve as u32,
         horizon: settings.horizon as u32,
         fresnel: settings.fresnel as u32,
-        edge_tint: Vec3::from_f32(settings.edge_tint),
         opacity: settings.opacity * factor(On::Opacity),
-        coat_color: Vec3::from_f32(settings.coat_color),
-        coat_weight: settings.coat_weight,
-        coat_roughness: settings.coat_roughness,
-        coat_ior: settings.coat_ior,
         light_luminance: mean_emission.luminance(),
         alpha_cutoff: if uses[On::Opacity] { slot.alpha_cutoff } else { -1.0 },
-        normal_strength: settings.normal_strength,
         flags: flags(settings, slot) | if is_on_box { HAS_BOX } else { 0 },
-        diffuse_roughness: settings.diffuse_roughness,
-        fuzz_color: Vec3::from_f32(settings.fuzz_color),
-        fuzz_weight: settings.fuzz_weight,
-        fuzz_roughness: settings.fuzz_roughness,
-        film_weight: settings.film_weight,
-        film_ior: settings.film_ior,
         reflecting_ior: settings.ior,
         bare_ior: settings.ior,
         coated_ior: settings.ior,
-        ..Material::default()
+        ..as_edited(settings)
     };
     for &target in On::ALL {
         if let Some(value) = slot.constant(target) {
@@ -499,7 +498,7 @@ fn albedo_key(material: &Material<f32>, curve_table: &[f32], is_inside: bool) ->
         coat_ior: if meets_coat { material.coat_ior } else { 1.0 },
         coat_weight: if meets_coat { material.coat_weight } else { 0.0 },
         // A dielectric without vertices.
-        flags: material.flags & (WEIGHS_INDEX | if meets_coat { COATS_BASE } else { 0 }),
+        flags: material.flags & (WEIGHS_INDEX | FILM_BANDS | if meets_coat { COATS_BASE } else { 0 }),
         transmission_weight: if transmits { 1.0 } else { 0.0 },
         ..Material::default()
     };

@@ -103,7 +103,7 @@ impl CpuEngine {
     /// Smallest number of samples per pixel in a pass. More samples per wave are cheaper. But the first image must come
     /// soon, and at the end of a step no part of it may have more than twice the samples of the rest.
     fn least_pass_samples(&self, left: Duration) -> u32 {
-        let samples = self.samples_per_pixel();
+        let samples = self.schedule.samples_per_pixel();
         if samples == 0 {
             return 1;
         }
@@ -160,11 +160,6 @@ impl CpuEngine {
     /// The film and schedule, for another engine to continue.
     pub fn hand_over(self) -> (Film, Schedule) {
         (self.film, self.schedule)
-    }
-
-    /// Completed samples per pixel.
-    pub fn samples_per_pixel(&self) -> u32 {
-        self.schedule.samples_per_pixel()
     }
 }
 

@@ -8,6 +8,7 @@ use super::recorder::Event;
 use crate::job::Job;
 use crate::optics::elementary::Single;
 use crate::optics::lanes::{InLanes, in_lanes};
+use crate::scene::PACKET;
 
 /// A path tracer that follows one path at a time, in f32.
 pub struct PathTracer<'a>(Integrator<'a, f32>);
@@ -23,9 +24,12 @@ impl<'a> PathTracer<'a> {
         self.record(pixel, sample, &mut Vec::new())
     }
 
-    /// The result of one path, whose events are appended to a list.
+    /// The result of one path, a wave of its own, whose events are appended to a list.
     pub fn record(&self, pixel: [u32; 2], sample: u32, events: &mut Vec<Event>) -> PathResult {
-        self.0.record_path(pixel, sample, events)
+        let mut wave = Wave::<Vec<Event>>::new(PACKET, 1, self.0.sequence());
+        self.0.trace_wave(&Tile::new(pixel, [1; 2]), [sample, 1], &mut wave);
+        events.append(&mut wave.paths.outputs[0].recorder);
+        self.0.result(&wave.paths, 0)
     }
 }
 

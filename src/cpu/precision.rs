@@ -4,8 +4,8 @@
 use super::integrator::is_sound;
 use super::oracle::PathTracer;
 use super::probe::moved_direction;
-use crate::job::Job;
 use crate::job::precision::{ERROR_BOUND, Finding, PrecisionMap, relative_error};
+use crate::job::{Job, Settings};
 use crate::optics::frame::Frame;
 use crate::optics::layer::{MaterialNumbers, material_evaluate, material_layers, material_sample};
 use crate::optics::material::{Material, Surface};
@@ -27,36 +27,56 @@ const LIGHT_DENSITY: f64 = 1.0;
 const DIMENSION: u32 = 64;
 /// Distances at which a ray's own surface must be hit straight back from its origin, in bounds of the position's error.
 const DISTANCE: [f32; 2] = [0.5, 2.0];
-/// Rows between two looks whether anybody still waits.
-const ROWS: u32 = 8;
+
+/// Rows of a map between two looks whether it is superseded.
+const MAP_ROWS: u32 = 8;
+
+impl Settings {
+    /// A map of the image: what is found at the centre of each of its pixels, row by row, from the place in the image and the
+    /// origin and direction of the ray through it. `None` as soon as it is superseded.
+    pub fn mapped<R: Send>(
+        &self,
+        [width, height]: [u32; 2],
+        is_superseded: impl Fn() -> bool,
+        find: impl Fn([f64; 2], [Vec3<f32>; 2]) -> R + Sync,
+    ) -> Option<Vec<R>> {
+        let camera = self.camera.cast();
+        let mut found = Vec::with_capacity(width as usize * height as usize);
+        for first in (0..height).step_by(MAP_ROWS as usize) {
+            if is_superseded() {
+                return None;
+            }
+            let pixels = (first + MAP_ROWS).min(height) * width - first * width;
+            found.extend(parallel::map(pixels as usize, |index| {
+                let index = first * width + index as u32;
+                let share = |pixel: u32, count: u32| (f64::from(pixel) + 0.5) / f64::from(count);
+                let shares = [share(index % width, width), share(index / width, height)];
+                let place = [0, 1].map(|i| shares[i] * f64::from(self.image_size[i]));
+                find(
+                    place,
+                    camera_ray(&camera, place.map(|x| x as f32), self.image_size, [0.5; 2]),
+                )
+            }));
+        }
+        Some(found)
+    }
+}
 
 /// The map of a job; `None` if cancelled.
 pub fn precision(job: &Job, [width, height]: [u32; 2], is_superseded: impl Fn() -> bool) -> Option<PrecisionMap> {
     let tracer = PathTracer::new(job);
-    let mut findings = Vec::with_capacity(width as usize * height as usize);
-    for first in (0..height).step_by(ROWS as usize) {
-        if is_superseded() {
-            return None;
-        }
-        let pixels = first * width..(first + ROWS).min(height) * width;
-        let find = |index: u32| find(job, &tracer, [index % width, index / width], [width, height]);
-        findings.extend(parallel::map(pixels.len(), |place| find(pixels.start + place as u32)));
-    }
+    let find = |place: [f64; 2], ray: [Vec3<f32>; 2]| find(job, &tracer, place, ray);
     Some(PrecisionMap {
         width,
         height,
         bound: ERROR_BOUND,
-        findings,
+        findings: job.settings.mapped([width, height], is_superseded, find)?,
     })
 }
 
-/// The findings at the centre of a map pixel.
-fn find(job: &Job, tracer: &PathTracer<'_>, pixel: [u32; 2], size: [u32; 2]) -> Finding {
+/// The findings at a place of the image.
+fn find(job: &Job, tracer: &PathTracer<'_>, place: [f64; 2], [origin, direction]: [Vec3<f32>; 2]) -> Finding {
     let settings = &job.settings;
-    let place = [0, 1].map(|i| {
-        let share = (f64::from(pixel[i]) + 0.5) / f64::from(size[i]);
-        share * f64::from(settings.image_size[i])
-    });
     let of_picture = place.map(|x| x as u32);
     let is_dropped = |sample: &u32| !is_sound(tracer.trace(of_picture, *sample).radiance);
     let dropped = (0..PATHS).filter(is_dropped).count() as u32;
@@ -64,12 +84,6 @@ fn find(job: &Job, tracer: &PathTracer<'_>, pixel: [u32; 2], size: [u32; 2]) -> 
         dropped,
         ..Finding::default()
     };
-    let [origin, direction] = camera_ray(
-        &settings.camera.cast(),
-        place.map(|x| x as f32),
-        settings.image_size,
-        [0.5; 2],
-    );
     let Some(hit) = job.geometry.intersect(origin.to_f32(), direction.to_f32(), f32::MAX) else {
         return nothing;
     };

@@ -11,6 +11,8 @@ pub trait Recorder: Default {
     const KEEPS: bool;
     /// Records an event. The closure is only called if events are kept, because making one costs time.
     fn record(&mut self, event: impl FnOnce() -> Event);
+    /// Amends the last [`Event::Light`]: that much of this radiance arrives.
+    fn light_arrives(&mut self, _visible: f32, _radiance: [f32; 3]) {}
 }
 
 /// Discards all events.
@@ -25,7 +27,23 @@ impl Recorder for Unrecorded {
 impl Recorder for Vec<Event> {
     const KEEPS: bool = true;
     fn record(&mut self, event: impl FnOnce() -> Event) {
-        self.push(event());
+        let event = event();
+        // The light of a shadow ray is added once the path has gone on: it belongs to the direction that was sampled.
+        let is_of_light =
+            |event: &Event| matches!(event, Event::Light { .. } | Event::LightHit { .. } | Event::Hit { .. });
+        let place = match (&event, self.iter().rposition(is_of_light)) {
+            (Event::Contribution { .. }, Some(last)) if matches!(self[last], Event::Light { .. }) => last + 1,
+            _ => self.len(),
+        };
+        self.insert(place, event);
+    }
+
+    fn light_arrives(&mut self, arrived: f32, light: [f32; 3]) {
+        let mut lights = self.iter_mut().rev();
+        if let Some(Event::Light { visible, radiance, .. }) = lights.find(|event| matches!(event, Event::Light { .. }))
+        {
+            (*visible, *radiance) = (arrived, light);
+        }
     }
 }
 
@@ -59,7 +77,7 @@ pub enum Purpose {
 /// Source of light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Source {
+pub enum LightSource {
     /// The environment light, at infinity.
     Environment,
     /// A surface that emits.
@@ -165,7 +183,7 @@ pub enum Event {
     #[serde(rename = "found")]
     LightHit {
         /// Source of the light.
-        source: Source,
+        source: LightSource,
         /// Radiance of the light.
         radiance: [f32; 3],
         /// Density of BSDF sampling per steradian; 0 if it does not compete.
@@ -177,7 +195,7 @@ pub enum Event {
     },
     /// A direction to a light was sampled.
     Light {
-        source: Source,
+        source: LightSource,
         /// Unit vector.
         direction: [f32; 3],
         /// Density of the direction, per steradian.
@@ -217,7 +235,7 @@ pub enum Event {
     /// Light was added to the sample.
     Contribution {
         /// Source of the light.
-        source: Source,
+        source: LightSource,
         /// Number of reflections and refractions.
         reflections: u32,
         /// The contribution before the firefly clamp.

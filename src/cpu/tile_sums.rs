@@ -25,7 +25,7 @@ impl<'a> TileSums<'a> {
         for block in tile.blocks() {
             let mut halves = [BlockSums::default(); 2];
             for (i, place) in block.places.iter().enumerate() {
-                let of_pixel = sums.film.halves(sums.pixel(place));
+                let of_pixel = sums.film.pixels[sums.pixel(place)];
                 for (half, of_pixel) in halves.iter_mut().zip(&of_pixel) {
                     half.set(i, of_pixel, of_pixel.mean_luminance(), true);
                 }
@@ -66,7 +66,7 @@ impl<'a> TileSums<'a> {
     /// Adds the optional sums: coverage, guides, light groups and clamped luminance.
     fn add_more(&mut self, [first, count]: [u32; 2], results: &Results) {
         let extras = self.film.extras();
-        if !extras.coverage && extras.light_groups == 0 && !results.has_extras() {
+        if !extras.coverage && extras.light_groups == 0 && !results.has_extras {
             return;
         }
         for sample in 0..count {
@@ -96,7 +96,7 @@ impl<'a> TileSums<'a> {
         for (block, halves) in self.tile.blocks().zip(&self.halves) {
             for (i, place) in block.places.iter().enumerate() {
                 let pixel = self.pixel(place);
-                self.film.set_halves(pixel, &halves.each_ref().map(|half| half.get(i)));
+                self.film.pixels[pixel] = halves.each_ref().map(|half| half.get(i));
             }
         }
     }

@@ -5,21 +5,18 @@ use serde::{Deserialize, Serialize};
 use super::group_name::GroupName;
 use super::{AreaLight, Document, MaterialSettings};
 use crate::job::light_sums::LIGHT_GROUPS_MAX;
+use crate::named::with_defaults;
 
-/// What a group's light is multiplied by after rendering.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
-pub struct LightMix {
-    pub group: GroupName,
-    /// Factor of its light, at least 0.
-    pub factor: f32,
-    /// Linear RGB in [0, 1], another factor.
-    pub color: [f32; 3],
-}
-
-impl Default for LightMix {
-    fn default() -> Self {
-        Self::of(GroupName::default())
+with_defaults! {
+    /// What a group's light is multiplied by after rendering.
+    #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+    #[serde(default)]
+    pub struct LightMix {
+        pub group: GroupName,
+        /// Factor of its light, at least 0.
+        pub factor: f32 = 1.0,
+        /// Linear RGB in [0, 1], another factor.
+        pub color: [f32; 3] = [1.0; 3],
     }
 }
 
@@ -28,8 +25,7 @@ impl LightMix {
     pub fn of(group: GroupName) -> Self {
         Self {
             group,
-            factor: 1.0,
-            color: [1.0; 3],
+            ..Self::default()
         }
     }
 }

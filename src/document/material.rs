@@ -6,13 +6,13 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value as Json};
 
 use super::CustomCurve;
-use super::user_textures::UserTextures;
 use crate::named::{named, with_defaults};
 use crate::optics::curve::Curve;
 use crate::optics::fresnel::{Fresnel, METALS, Metal};
 use crate::optics::lobe::{Horizon, Lobe};
 use crate::optics::target::{TARGETS, TextureTarget};
 use crate::optics::thin_film::has_film;
+use crate::scene::texture::UserTextures;
 
 /// The metal of new materials, in [`METALS`].
 const ALUMINIUM: usize = 3;

@@ -1,7 +1,7 @@
 //! The images of a material in use: the user's, and the model's.
 
 use super::{CoatLobe, MaterialSettings, PARAMETERS, TextureUse};
-use crate::scene::texture::{TextureAssignment, TextureProjection, TextureTarget as On, UserTexture};
+use crate::scene::texture::{TextureProjection, TextureTarget as On, UserTexture};
 
 impl MaterialSettings {
     /// Puts an image on a target, so that it is seen: what it multiplies becomes 1 where another value would hide it.
@@ -48,20 +48,4 @@ impl MaterialSettings {
             }
         }
     }
-}
-
-/// Users' textures of materials, by slot.
-pub fn texture_assignments(materials: &[MaterialSettings]) -> Vec<TextureAssignment> {
-    let of_slot = |(slot, material): (usize, &MaterialSettings)| {
-        let assigned = material
-            .user_textures
-            .iter()
-            .map(|(target, texture)| TextureAssignment {
-                slot,
-                target,
-                texture: texture.clone(),
-            });
-        assigned.collect::<Vec<_>>()
-    };
-    materials.iter().enumerate().flat_map(of_slot).collect()
 }

@@ -24,7 +24,6 @@ mod settings;
 mod switches;
 mod texture_json;
 pub mod turntable;
-mod user_textures;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -41,7 +40,6 @@ pub use history::History;
 pub use import::ImportLobe;
 pub use light_groups::LightMix;
 pub use material::{CoatLobe, Conductor, MaterialSettings, SPECULAR_COLOR_MAX, TextureUse};
-pub use material_textures::texture_assignments;
 pub use parameter::{
     Choice, Kind, LIGHT_PARAMETERS, PARAMETERS, Parameter, ParameterError, SETTINGS, Stage, TEXTURE_PARAMETERS, Value,
     assign, parameter, setting,
@@ -52,7 +50,8 @@ pub use settings::{
     Background, Bookmark, CameraSettings, Denoise, DenoiseWhen, Lighting, RenderSettings, ViewSettings,
 };
 pub use texture_json::{TextureError, texture_from_json, texture_to_json};
-pub use user_textures::UserTextures;
+
+pub use crate::scene::texture::UserTextures;
 
 pub use crate::job::{LightPaths, Strategy};
 pub use crate::scene::camera::PixelFilter;

@@ -24,16 +24,6 @@ pub const FOV_DEG: RangeInclusive<f64> = 0.1..=170.0;
 pub const APERTURE: RangeInclusive<f64> = 0.0..=10.0;
 /// Exposure, stops.
 pub const EXPOSURE_EV: RangeInclusive<f64> = -32.0..=32.0;
-/// Temperature of the light that appears white, K.
-pub const WHITE_K: RangeInclusive<f64> = 2000.0..=20_000.0;
-/// Power around middle grey.
-pub const CONTRAST: RangeInclusive<f64> = 0.1..=4.0;
-/// Factor of the distance from grey.
-pub const SATURATION: RangeInclusive<f64> = 0.0..=4.0;
-/// Strength of the darker corners.
-pub const VIGNETTE: RangeInclusive<f64> = 0.0..=2.0;
-/// Share of the light that the glare spreads.
-pub const GLARE: RangeInclusive<f64> = 0.0..=1.0;
 /// Factor of a light group.
 pub const LIGHT_MIX: RangeInclusive<f64> = 0.0..=1000.0;
 /// Width and height, pixels; the random numbers' counters have 16 bits for each.
@@ -55,12 +45,8 @@ pub const AREA_LENGTH: RangeInclusive<f64> = 1e-3..=1e3;
 pub const LIGHT_TARGET: RangeInclusive<f64> = -1e3..=1e3;
 /// The angle across a spot's cone, degrees.
 pub const CONE_DEG: RangeInclusive<f64> = 1.0..=180.0;
-/// The share of a spot's cone over which it fades.
-pub const SOFTNESS: RangeInclusive<f64> = 0.0..=1.0;
 /// The angle across a sun, degrees.
 pub const SUN_ANGLE_DEG: RangeInclusive<f64> = 0.01..=90.0;
-/// Metres of a scene unit.
-pub const UNIT_M: RangeInclusive<f64> = 1e-6..=1e6;
 /// The longest side of a model's textures, texels.
 pub const TEXTURE_SIDE: RangeInclusive<f64> = 16.0..=16384.0;
 /// Time of a model's pose, seconds.

@@ -33,11 +33,13 @@ impl Switch {
 
 /// A switch for each effect. In files an object with the names of those that are not automatic; names that this version
 /// does not know are passed over.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub struct EffectSwitches {
-    /// Bit i: effect i of the registry.
-    on: u64,
-    off: u64,
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct EffectSwitches([Switch; EffectId::ALL.len()]);
+
+impl Default for EffectSwitches {
+    fn default() -> Self {
+        Self([Switch::Auto; EffectId::ALL.len()])
+    }
 }
 
 impl EffectSwitches {
@@ -57,25 +59,13 @@ impl EffectSwitches {
 
     /// The switch of an effect.
     pub fn get(&self, effect: EffectId) -> Switch {
-        let bit = bit(effect);
-        match (self.on & bit != 0, self.off & bit != 0) {
-            (true, _) => Switch::On,
-            (false, true) => Switch::Off,
-            (false, false) => Switch::Auto,
-        }
+        self.0[effect as usize]
     }
 
     /// Sets the switch of an effect; to automatic where it can't be set so ([`Switch::can_be_set`]).
     pub fn set(&mut self, effect: EffectId, switch: Switch) {
-        let bit = bit(effect);
         let is_possible = switch.can_be_set(effect);
-        self.on &= !bit;
-        self.off &= !bit;
-        match switch {
-            Switch::On if is_possible => self.on |= bit,
-            Switch::Off if is_possible => self.off |= bit,
-            _ => {}
-        }
+        self.0[effect as usize] = if is_possible { switch } else { Switch::Auto };
     }
 }
 
@@ -140,10 +130,6 @@ impl FromStr for EffectSwitches {
         }
         Ok(switches)
     }
-}
-
-fn bit(effect: EffectId) -> u64 {
-    1 << effect as u32
 }
 
 impl Serialize for EffectSwitches {

@@ -86,12 +86,8 @@ impl GpuAdapter {
             }))
     }
 
-    /// All adapters, real GPUs first.
-    pub fn all() -> Vec<Self> {
-        Self::of_kind(AdapterKind::Any)
-    }
-
-    fn of_kind(kind: AdapterKind) -> Vec<Self> {
+    /// All adapters of a kind, real GPUs first.
+    pub fn of_kind(kind: AdapterKind) -> Vec<Self> {
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
         let wanted = |backends| {
             let found = block_on(instance.enumerate_adapters(backends))

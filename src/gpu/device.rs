@@ -262,13 +262,8 @@ impl GpuDevice {
         buffer
     }
 
-    /// The contents of a buffer of one kind of plain value; waits for the device.
-    pub fn read<A: bytemuck::Pod>(&self, buffer: &wgpu::Buffer, count: usize) -> Result<Vec<A>, GpuError> {
-        self.read_part(buffer, 0..count)
-    }
-
     /// The same for a range of the values.
-    pub fn read_part<A: bytemuck::Pod>(&self, buffer: &wgpu::Buffer, part: Range<usize>) -> Result<Vec<A>, GpuError> {
+    pub fn read<A: bytemuck::Pod>(&self, buffer: &wgpu::Buffer, part: Range<usize>) -> Result<Vec<A>, GpuError> {
         let [first, size] = [part.start, part.len()].map(|count| (count * size_of::<A>()) as u64);
         let usage = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
         let staging = self.buffer("read back", size, usage);

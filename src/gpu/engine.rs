@@ -257,11 +257,6 @@ impl GpuEngine {
         &self.schedule
     }
 
-    /// Completed samples per pixel.
-    pub fn samples_per_pixel(&self) -> u32 {
-        self.schedule.samples_per_pixel()
-    }
-
     /// GPU time of the job by its own clock, in seconds; `None` without one.
     pub fn gpu_seconds(&self) -> Option<f64> {
         self.timer.as_ref().map(|_| self.gpu_seconds)
@@ -271,19 +266,19 @@ impl GpuEngine {
 /// Merges the GPU's sums of some pixels of a band into the film.
 fn merge_band(gpu: &GpuDevice, film: &mut Film, band: &Band, part: Range<usize>) -> Result<(), GpuError> {
     let [all_colors, statistics, guides] = &band.buffers;
-    let colors: Vec<PixelColors> = gpu.read_part(all_colors, part.clone())?;
-    let statistics: Vec<PixelStatistics> = gpu.read_part(statistics, part.clone())?;
+    let colors: Vec<PixelColors> = gpu.read(all_colors, part.clone())?;
+    let statistics: Vec<PixelStatistics> = gpu.read(statistics, part.clone())?;
     let first = band.first_row as usize * film.width as usize + part.start;
     merge_sums(film, first, &colors, &statistics);
     for group in 0..film.light_groups() {
         let before = (1 + group) * band.pixels;
-        let lights: Vec<PixelColors> = gpu.read_part(all_colors, before + part.start..before + part.end)?;
+        let lights: Vec<PixelColors> = gpu.read(all_colors, before + part.start..before + part.end)?;
         for (pixel, light) in (first..).zip(&lights) {
             film.add_light(pixel, group, light_sums(light));
         }
     }
     if film.extras().guides {
-        let guides: Vec<[GuideSums; 2]> = gpu.read_part(guides, part)?;
+        let guides: Vec<[GuideSums; 2]> = gpu.read(guides, part)?;
         let sums = film.guides[first..].as_flattened_mut().iter_mut();
         sums.zip(guides.as_flattened()).for_each(|(sums, seen)| sums.add(seen));
     }

@@ -28,8 +28,8 @@ use crate::optics::layer::transmission::APART_LEAST;
 use crate::optics::lobe::{ALPHA_MIN, Horizon, Lobe, LobeTraits, MIRROR_WIDTH, Width};
 use crate::optics::material::{
     COAT_ABSORBS, COAT_IS_GGX, COATS_BASE, COMPENSATES, FIELDS, FILM_BANDS, Field, HAS_BOX, HAS_PROFILE, HOLDS_FILM,
-    HOLDS_INTEGRALS, LIGHT_GROUP_SHIFT, MATCHED_NODES, NO_TEXTURE, OVER_AZIMUTH, SPARES_METAL, TEXTURES,
-    VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY, WEIGHS_INDEX,
+    HOLDS_INTEGRALS, LIGHT_GROUP_SHIFT, MATCHED_NODES, NO_TEXTURE, OVER_AZIMUTH, SPARES_METAL, TEXTURES, VERTEX_BASE,
+    VERTEX_EMISSION, VERTEX_OPACITY, WEIGHS_INDEX,
 };
 use crate::optics::random::Sequence;
 use crate::optics::rough_diffuse::{HEAD_ON, MEAN, ROUGH_COSINE_MIN};
@@ -95,8 +95,14 @@ fn material_structure() -> String {
             "Vec3<T>" => "vec3f",
             "[u32; TEXTURES]" => {
                 let spare = |index| format!("spare_{index}");
-                let name = |index| TextureTarget::ALL.get(index).map_or_else(|| spare(index), |target| texture(*target));
-                return (0..TEXTURES).map(|index| format!("    {}: u32,\n", name(index))).collect();
+                let name = |index| {
+                    TextureTarget::ALL
+                        .get(index)
+                        .map_or_else(|| spare(index), |target| texture(*target))
+                };
+                return (0..TEXTURES)
+                    .map(|index| format!("    {}: u32,\n", name(index)))
+                    .collect();
             }
             same => same,
         };
@@ -123,7 +129,9 @@ fn material_structure() -> String {
         &products.collect::<Vec<_>>(),
         "",
     );
-    format!("// Generated from src/optics/material.rs and target.rs.\nstruct Material {{\n{fields}}}\n{numbers}{multiply}")
+    format!(
+        "// Generated from src/optics/material.rs and target.rs.\nstruct Material {{\n{fields}}}\n{numbers}{multiply}"
+    )
 }
 
 /// Constants by their names in Rust.

@@ -57,7 +57,7 @@ impl Probe {
             let buffers = [&asked, &answered].map(wgpu::Buffer::as_entire_binding);
             let own = compute::bind(gpu, &pass.own_layout, (0..).zip(buffers));
             compute::dispatch(gpu, &pipeline, [&scene, &own], (batch.len() as u32).div_ceil(64), None);
-            answers.extend(gpu.read::<A>(&answered, batch.len())?);
+            answers.extend(gpu.read::<A>(&answered, 0..batch.len())?);
         }
         Ok(answers)
     }

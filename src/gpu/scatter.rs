@@ -76,7 +76,7 @@ impl Scatterer {
                 compute::bind(gpu, &self.groups[1], (0..).zip(buffers)),
             ];
             compute::dispatch(gpu, &self.pipeline, groups.each_ref(), count.div_ceil(64), None);
-            samples.extend(gpu.read::<[f32; 4]>(&out, count as usize)?);
+            samples.extend(gpu.read::<[f32; 4]>(&out, 0..count as usize)?);
         }
         Ok(ScatterCloud::from_raw(samples))
     }

@@ -46,7 +46,7 @@ pub(crate) struct Assembly<'a, K> {
     last_node: Option<usize>,
 }
 
-impl<'a, K: Hash + Eq + Copy> Assembly<'a, K> {
+impl<'a, K: Hash + Eq> Assembly<'a, K> {
     /// An empty one for nodes with these keys.
     pub fn new(path: &'a Path, loading: &'a Loading, keys: impl Iterator<Item = K>) -> Self {
         let mut sources: HashMap<K, (usize, Option<UsedMesh>)> = HashMap::new();

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 /// Models, in search order for folders and archives.
-pub const MODELS: [&str; 7] = ["gltf", "glb", "fbx", "obj", "ply", "stl", "zip"];
+pub const MODELS: [&str; 10] = ["gltf", "glb", "usdz", "usdc", "usd", "fbx", "obj", "ply", "stl", "zip"];
 
 /// Images of light, opened as environments.
 pub const LIGHT: [&str; 6] = ["hdr", "exr", "ktx2", "dds", "pic", "rgbe"];

@@ -19,8 +19,11 @@ mod obj;
 pub mod picture;
 mod ply;
 mod polygon;
+mod preview_surface;
 pub mod remembered;
 mod stl;
+#[cfg(feature = "usd")]
+pub mod usd;
 
 pub use fbx::FBX_PARAMETERS;
 pub use file_parameter::{FileParameter, Goes};
@@ -29,3 +32,4 @@ pub use limits::{Budget, OverBudget};
 pub use model::{holds_model, is_model, load, load_watched, load_with};
 pub use model_error::ModelError;
 pub use obj::MTL_PARAMETERS;
+pub use preview_surface::USD_PREVIEW_SURFACE;

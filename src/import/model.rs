@@ -135,6 +135,7 @@ fn load_file(path: &Path, files: Files, bytes: Vec<u8>, options: &ModelOptions) 
         "obj" => obj::load(path, &files, &bytes, options)?,
         "ply" => ply::load(path, &files, &bytes, options)?,
         "stl" => stl::load(path, &bytes, &files.import.loading)?,
+        "usd" | "usda" | "usdc" | "usdz" => load_usd(path, files, bytes, options)?,
         // glTF files are recognised by their first bytes, not by name.
         _ => gltf::load(path, files, bytes, options)?,
     };
@@ -142,6 +143,16 @@ fn load_file(path: &Path, files: Files, bytes: Vec<u8>, options: &ModelOptions) 
         return Err(ModelError::no_triangles(path));
     }
     Ok(model)
+}
+
+#[cfg(feature = "usd")]
+use crate::usd::load as load_usd;
+
+/// Says that the program was built without.
+#[cfg(not(feature = "usd"))]
+fn load_usd(path: &Path, _files: Files, _bytes: Vec<u8>, _options: &ModelOptions) -> Result<Model, ModelError> {
+    let what = "this program was built without USD (the feature `usd`); convert the model to glTF";
+    Err(ModelError::refused(path, what))
 }
 
 /// Common steps of all formats: lengths in bounding radii, and a warning on unusable triangles.

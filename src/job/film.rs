@@ -199,10 +199,10 @@ impl Film {
 
     /// Adds sample number `sample` of a pixel: linear colour with coverage.
     pub fn add(&mut self, pixel: usize, sample: u32, color: [f64; 4]) {
-        let mut halves = self.halves(pixel);
+        let mut halves = self.pixels[pixel];
         let [red, green, blue, coverage] = color;
         halves[sample as usize % 2].add([red, green, blue]);
-        self.set_halves(pixel, &halves);
+        self.pixels[pixel] = halves;
         self.add_coverage(pixel, coverage);
     }
 
@@ -213,19 +213,9 @@ impl Film {
         }
     }
 
-    /// The two halves of a pixel's samples: the even ones and the odd ones, see [`crate::optics::random::path_state`].
-    pub fn halves(&self, pixel: usize) -> [HalfSums; 2] {
-        self.pixels[pixel]
-    }
-
-    /// Replaces a pixel's sums.
-    pub fn set_halves(&mut self, pixel: usize, halves: &[HalfSums; 2]) {
-        self.pixels[pixel] = *halves;
-    }
-
     /// Sums over all samples of a pixel.
     pub fn sums(&self, pixel: usize) -> HalfSums {
-        let [even, odd] = self.halves(pixel);
+        let [even, odd] = self.pixels[pixel];
         even.with(&odd)
     }
 
@@ -257,7 +247,7 @@ impl Film {
     /// Guide samples per half of a pixel, if rendering started with the first sample.
     pub fn guide_samples(&self, pixel: usize) -> [f64; 2] {
         let most = f64::from(GUIDE_SAMPLES / 2);
-        self.halves(pixel).map(|half| half.samples.min(most))
+        self.pixels[pixel].map(|half| half.samples.min(most))
     }
 
     /// A rectangle of it, from `origin`, which is that of a tile.

@@ -57,7 +57,7 @@ impl Film {
             return Cow::Borrowed(self);
         }
         let mixed = |pixel: usize| {
-            let halves = self.halves(pixel);
+            let halves = self.pixels[pixel];
             std::array::from_fn(|number| {
                 let lights = self.lights(pixel).iter().map(|sums| sums[number]);
                 mixed_half(&halves[number], lights.zip(factors))

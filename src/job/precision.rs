@@ -1,5 +1,6 @@
 //! Map of numerical trouble in a render: f32 against f64, dropped samples, rays that start on the wrong side.
 
+use crate::named::named;
 use crate::optics::vector::Vec3;
 
 /// Largest error of f32 against f64, relative as in [`relative_error`], that counts as none.
@@ -34,36 +35,16 @@ pub struct Finding {
     pub starts_astray: bool,
 }
 
-/// Kinds of trouble, the gravest first.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Fault {
-    Dropped,
-    /// f32 and f64 differ by more than the bound.
-    Differs,
-    /// Rays start on the wrong side of a surface.
-    Astray,
+named! {
+    /// Kinds of trouble, the gravest first.
+    Fault {
+        Dropped, "dropped", "dropped", "Pixels where a sample was not finite or negative, and left out.";
+        Differs, "differs", "f32 off f64", "Pixels where the material's value in f32 is off that in f64 by more than 0.1 %.";
+        Astray, "astray", "start inside", "Pixels where a ray that leaves the surface would start within other geometry, or on the wrong side.";
+    }
 }
 
 impl Fault {
-    /// All kinds, with labels and explanations.
-    pub const ALL: [(Self, &str, &str); 3] = [
-        (
-            Self::Dropped,
-            "dropped",
-            "Pixels where a sample was not finite or negative, and left out.",
-        ),
-        (
-            Self::Differs,
-            "f32 off f64",
-            "Pixels where the material's value in f32 is off that in f64 by more than 0.1 %.",
-        ),
-        (
-            Self::Astray,
-            "start inside",
-            "Pixels where a ray that leaves the surface would start within other geometry, or on the wrong side.",
-        ),
-    ];
-
     /// Its colour, 8-bit RGB, from a palette safe for colour-blind viewers.
     pub fn color(self) -> [u8; 3] {
         match self {
@@ -107,8 +88,8 @@ impl PrecisionMap {
     /// RGBA, 8 bits each: the gravest finding's colour, else dim grey to recognise the scene, black without a hit.
     pub fn colors(&self) -> Vec<u8> {
         let color = |finding: &Finding| {
-            let fault = Fault::ALL.iter().find(|(fault, ..)| self.has(finding, *fault));
-            let [red, green, blue] = fault.map_or([(FACING * finding.cosine) as u8; 3], |(fault, ..)| fault.color());
+            let fault = Fault::ALL.iter().find(|fault| self.has(finding, **fault));
+            let [red, green, blue] = fault.map_or([(FACING * finding.cosine) as u8; 3], |fault| fault.color());
             [red, green, blue, 255]
         };
         self.findings.iter().flat_map(color).collect()

@@ -11,7 +11,9 @@ use super::albedo::{
     ALBEDO_LENGTH, ALBEDO_NODES, ROUGH_ALBEDO_LENGTH, ROUGHNESS_NODES, albedo_lookup, node_turn, rough_albedo_lookup,
     table_row, view_at,
 };
-use super::fresnel::{FresnelTerms, fresnel, fresnel_dielectric, fresnel_parts, fresnel_transmitted};
+use super::fresnel::{
+    FresnelTerms, fresnel, fresnel_dielectric, fresnel_f0, fresnel_parts, fresnel_transmitted,
+};
 use super::lanes::{InLanes, in_lanes};
 use super::lobe::ggx::visible_normal;
 use super::lobe::{LobeShape, microfacet_alpha};
@@ -25,8 +27,8 @@ use crate::optics::prelude::*;
 use crate::parallel;
 
 inlined! {
-    /// Factor by which a clear interface refracts, or reflects, more than single scattering does, linear RGB. A film shares
-    /// the light otherwise in each channel.
+    /// Factor by which a clear interface refracts, or reflects from within, more than single scattering does, linear RGB. A
+    /// film shares the light otherwise in each channel.
     pub fn interface_gain<T: Real>(
         material: &Material<T>,
         surface: &Surface<T>,
@@ -39,11 +41,8 @@ inlined! {
         let is_within = surface.is_within(material);
         let gain = |channel: usize| {
             let [_, outside, inside, reflected] = kept_energies(material, surface, shape, channel);
-            let kept = match is_reflected {
-                true => [T::ONE, reflected],
-                false => [outside, inside],
-            };
-            T::ONE / T::select(is_within, kept[1], kept[0])
+            let refracted = T::select(is_within, inside, outside);
+            T::ONE / if is_reflected { reflected } else { refracted }
         };
         let first = gain(0);
         if material.has_film == 0 || !material.transmits().any() {
@@ -78,25 +77,34 @@ inlined! {
     ) -> Vec3<T> {
         let (white, one) = (Vec3::ONE, T::ONE);
         let [kept, ..] = kept_energies(material, surface, shape, 0);
-        let gain = |head_on: Vec3<T>| {
-            // Of the light that meets facets again a part leaves each time; those it meets at a slant reflect more.
-            let leaves = kept.sqrt();
-            let slant = T::from_f64(0.45) - T::from_f64(0.2) * surface.view_cosine();
-            let mean = head_on.mix(terms.metal_tint, kept * leaves * slant);
-            let again = mean.map(|mean| mean * leaves / (one - mean * (one - leaves)));
-            white + again * ((one - kept) / kept)
-        };
+        let gain = |head_on, grazing| facet_gain(head_on, grazing, kept, surface.view_cosine());
         if !terms.has_parts() {
-            return fresnel(terms, cosine) * white.mix(gain(fresnel(terms, one)), terms.metalness);
+            return fresnel(terms, cosine) * white.mix(gain(fresnel(terms, one), terms.metal_tint), terms.metalness);
         }
         let [dielectric, metal] = fresnel_parts(terms, cosine);
         let mut head_on = terms.metal_f0 * terms.metal_tint;
         if terms.has_film {
             head_on = fresnel_parts(terms, one)[1];
         }
-        // The refracting share of a dielectric is clear; the rest lies over a base.
-        let clear = white.mix(interface_gain(material, surface, shape, true), material.transmission_weight);
-        (dielectric * clear).mix(metal * gain(head_on), terms.metalness)
+        // The refracting share of a dielectric is clear; the rest lies over a base. An index of 1 lets all else go straight on.
+        let is_within = surface.is_within(material);
+        let mut clear = gain(Vec3::splat(fresnel_f0(terms.ior)), white);
+        if is_within.any() {
+            clear = Vec3::select(is_within, interface_gain(material, surface, shape, true), clear);
+        }
+        let share = material.transmission_weight.masked(material.ior.differs(one));
+        let dielectric = dielectric * white.mix(clear, share);
+        dielectric.mix(metal * gain(head_on, terms.metal_tint), terms.metalness)
+    }
+
+    /// Factor by which facets reflect more than once does, where they keep this share of the light with F = 1; `head_on` and
+    /// `grazing` reflectances, the view's cosine. Of the light that meets facets again a part leaves each time.
+    pub fn facet_gain<T: Real>(head_on: Vec3<T>, grazing: Vec3<T>, kept: T, cosine: T) -> Vec3<T> {
+        let (one, leaves) = (T::ONE, kept.sqrt());
+        let slant = T::from_f64(0.45) - T::from_f64(0.2) * cosine;
+        let mean = head_on.mix(grazing, kept * leaves * slant);
+        let again = mean.map(|mean| mean * leaves / (one - mean * (one - leaves)));
+        Vec3::ONE + again * ((one - kept) / kept)
     }
 
     /// Shares that single scattering has of the light for a view, by a channel's table, as in [`scattering_table`].
@@ -156,7 +164,7 @@ pub fn scattering_table(material: &Material<f64>, samples: u32) -> Vec<f32> {
                 points: &points,
             },
         );
-        [0, 1, 2].map(|channel| kept_shares(&material, means.map(|sums| sums.to_f64()[channel])))
+        [0, 1, 2].map(|channel| kept_shares(&material, cosine, means.map(|sums| sums.to_f64()[channel])))
     };
     let energies: Vec<_> = parallel::map(steps * ALBEDO_NODES, energies);
     let channels = if material.has_film == 1 && material.transmits() {
@@ -169,7 +177,7 @@ pub fn scattering_table(material: &Material<f64>, samples: u32) -> Vec<f32> {
 }
 
 /// The numbers of [`scattering_table`] from the means of [`Kept`].
-fn kept_shares(material: &Material<f64>, [metal, passed, outer, inner_passed, inner, met]: [f64; 6]) -> [f32; 4] {
+fn kept_shares(material: &Material<f64>, cosine: f64, [metal, passed, outer, inner_passed, inner, met]: [f64; 6]) -> [f32; 4] {
     // A facet seen from within lets through what it refracts and a part of what is lost; the rest is reflected, as far as that
     // spreads the weights of paths no further.
     let through = inner_passed + 0.4 * material.roughness * (1.0 - met) * (1.0 - inner - inner_passed);
@@ -178,6 +186,8 @@ fn kept_shares(material: &Material<f64>, [metal, passed, outer, inner_passed, in
         true => inner,
         false => most.max(inner / (inner + inner_passed)),
     };
+    let head_on = Vec3::splat(fresnel_f0(material.fresnel_terms(false).ior));
+    let outer = outer * facet_gain(head_on, Vec3::ONE, metal.max(LEAST_KEPT), cosine).x;
     let tiny = f64::MIN_POSITIVE;
     let shares = [passed / (1.0 - outer).max(tiny), inner_passed / (1.0 - reflected).max(tiny), inner / reflected.max(tiny)];
     let [outside, inside, reflected] = shares.map(|share| share.max(LEAST_KEPT));

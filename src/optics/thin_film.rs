@@ -19,8 +19,8 @@ use crate::optics::prelude::*;
 pub const WAVELENGTHS_NM: [f64; 3] = [620.0, 540.0, 450.0];
 /// The largest reflectance at normal incidence for which a complex index is sought.
 pub const LARGEST_FILM_F0: f64 = 0.999;
-/// The phase of a crossing up to which a film has no bands: three wavelengths. Beyond, they open with the phase.
-pub const UNBANDED_PHASE: f64 = 3.0 * std::f64::consts::TAU;
+/// The phase of a crossing up to which a film has no bands: four wavelengths. Beyond, they open with the phase.
+pub const UNBANDED_PHASE: f64 = 4.0 * std::f64::consts::TAU;
 /// The half-width that the bands go towards, over the wavelength: 45 nm in the green.
 pub const BAND_WIDTH: f64 = 1.0 / 12.0;
 /// The least cosine: at 0 a film over the index before it would be 0/0.

@@ -12,8 +12,8 @@ use crate::job::film::Image;
 pub struct FilmId(u64);
 
 impl FilmId {
-    #[expect(clippy::new_without_default, reason = "each is another")]
-    pub fn new() -> Self {
+    /// Another one each time.
+    pub fn another() -> Self {
         static LAST: AtomicU64 = AtomicU64::new(0);
         Self(LAST.fetch_add(1, Relaxed))
     }

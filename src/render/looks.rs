@@ -45,8 +45,8 @@ pub fn compared(materials: &[MaterialSettings; 2]) -> Result<Compared, SessionEr
         rendered(&mut session, &materials[0])?,
         rendered(&mut session, &materials[1])?,
     ];
-    let halves = [&first, &second].map(|render| Halves::of(&render.film));
-    let products: Vec<f64> = (0..first.film.pixel_count())
+    let halves = [&first, &second].map(|(_, film)| Halves::of(film));
+    let products: Vec<f64> = (0..first.1.pixel_count())
         .map(|pixel| {
             let [first, second] = &halves;
             (first.even[pixel] - second.even[pixel]) * (first.odd[pixel] - second.odd[pixel])
@@ -60,7 +60,7 @@ pub fn compared(materials: &[MaterialSettings; 2]) -> Result<Compared, SessionEr
     let squares = products.iter().sum::<f64>() / products.len() as f64;
     Ok(Compared {
         difference: squares.max(0.0).sqrt() / mean,
-        pictures: [shown(&first.image), shown(&second.image), map],
+        pictures: [shown(&first.0), shown(&second.0), map],
     })
 }
 
@@ -117,12 +117,7 @@ pub(super) fn ball(material: &MaterialSettings, side: u32, samples: u32, denoise
 }
 
 /// What a material looks like, and its samples.
-struct Render {
-    image: Arc<Image>,
-    film: Film,
-}
-
-fn rendered(session: &mut Session, material: &MaterialSettings) -> Result<Render, SessionError> {
+fn rendered(session: &mut Session, material: &MaterialSettings) -> Result<(Arc<Image>, Film), SessionError> {
     let mut document = ball(material, SIDE, SAMPLES, denoise_if_possible());
     match session.submit(&document) {
         // The denoiser needs most of the memory.
@@ -137,8 +132,5 @@ fn rendered(session: &mut Session, material: &MaterialSettings) -> Result<Render
         Some(denoised) => denoised.image,
         None => Arc::new(session.image()?),
     };
-    Ok(Render {
-        image,
-        film: session.film()?.clone(),
-    })
+    Ok((image, session.film()?.clone()))
 }

@@ -32,7 +32,7 @@ mod workshop;
 
 pub use crate::compile::{Assets, Reloaded};
 pub use convergence::Measurement;
-pub use engine::{EngineChoice, EngineInfo, EngineKind, Precision, RayQueries, Sampler};
+pub use engine::{EngineChoice, EngineInfo, EngineKind, MachineOptions, Precision, RayQueries, Sampler};
 pub(crate) use engine::{cpu_name, device_for_functions};
 pub use error::SessionError;
 pub use output::Layers;

@@ -4,8 +4,9 @@ use std::sync::Arc;
 
 use super::background::Responder;
 use crate::job::Job;
+use crate::optics::vector::Vec3;
 use crate::parallel;
-use crate::scene::{NO_OBJECT, camera::camera_ray};
+use crate::scene::NO_OBJECT;
 
 /// Longest side of the map in pixels.
 const SIDE_MAX_PX: u32 = 2048;
@@ -13,8 +14,6 @@ const SIDE_MAX_PX: u32 = 2048;
 pub const NOTHING: u32 = NO_OBJECT;
 /// By how much the shapes of images of one view may differ.
 const ASPECT_ROUNDING: f64 = 0.02;
-/// Rows between two checks for cancellation.
-const ROWS: usize = 32;
 
 /// Object and slot hit through each pixel's centre.
 #[derive(Clone, Debug)]
@@ -36,22 +35,19 @@ pub fn answer((job, size): (Arc<Job>, [u32; 2]), responder: &Responder<'_, Arc<S
 /// The map of a job in these columns and rows, at any size of its image; `None` if superseded.
 pub fn seen_map(job: &Arc<Job>, [columns, rows]: [u32; 2], is_superseded: impl Fn() -> bool) -> Option<SeenMap> {
     let [width, height] = fitted([columns, rows], SIDE_MAX_PX);
-    let mut seen = Vec::with_capacity((width * height) as usize);
-    let all: Vec<u32> = (0..height).collect();
-    for some in all.chunks(ROWS) {
-        if is_superseded() {
-            return None;
-        }
-        let columns = width as usize;
-        seen.extend(parallel::map(some.len() * columns, |place| {
-            seen_at(job, [(place % columns) as u32, some[place / columns]], [width, height])
-        }));
-    }
+    let geometry = &job.geometry;
+    let seen = |_: [f64; 2], [origin, direction]: [Vec3<f32>; 2]| {
+        let hit = geometry.intersect(origin.to_f32(), direction.to_f32(), f32::MAX);
+        hit.map_or([NOTHING; 2], |hit| {
+            let triangle = hit.triangle as usize;
+            [geometry.object(triangle), geometry.slot(triangle)]
+        })
+    };
     Some(SeenMap {
         job: job.clone(),
         width,
         height,
-        seen,
+        seen: job.settings.mapped([width, height], is_superseded, seen)?,
     })
 }
 
@@ -59,19 +55,6 @@ pub fn seen_map(job: &Arc<Job>, [columns, rows]: [u32; 2], is_superseded: impl F
 pub fn fitted(size: [u32; 2], side_max: u32) -> [u32; 2] {
     let longest = size[0].max(size[1]).max(1);
     size.map(|side| (side * side_max.min(longest)).div_ceil(longest).max(1))
-}
-
-fn seen_at(job: &Job, pixel: [u32; 2], size: [u32; 2]) -> [u32; 2] {
-    let settings = &job.settings;
-    let place =
-        [0, 1].map(|i| ((f64::from(pixel[i]) + 0.5) / f64::from(size[i]) * f64::from(settings.image_size[i])) as f32);
-    let [origin, direction] = camera_ray(&settings.camera.cast(), place, settings.image_size, [0.5; 2]);
-    let geometry = &job.geometry;
-    let hit = geometry.intersect(origin.to_f32(), direction.to_f32(), f32::MAX);
-    hit.map_or([NOTHING; 2], |hit| {
-        let triangle = hit.triangle as usize;
-        [geometry.object(triangle), geometry.slot(triangle)]
-    })
 }
 
 impl SeenMap {

@@ -5,6 +5,7 @@ use crate::analysis::noise::relative_errors;
 use crate::document::ViewSettings;
 use crate::job::features::Features;
 use crate::job::film::{Film, Image};
+use crate::named::named;
 use crate::optics::{tone::srgb_from_linear, vector::vec3};
 use crate::parallel;
 use crate::plot::scale_color;
@@ -19,82 +20,25 @@ pub const CLIPPED: [[u8; 3]; 2] = [[255, 40, 40], [40, 90, 255]];
 /// Colour of missing values.
 const NOTHING: [u8; 4] = [24, 24, 24, 255];
 
-/// A view of a render.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Shown {
-    #[default]
-    Picture,
-    /// The estimated error of each pixel.
-    Error,
-    /// The samples of each pixel.
-    Samples,
-    /// Numerical trouble: made in the background, see [`super::precision`].
-    Precision,
-    /// Luminance in stops.
-    FalseColor,
-    /// The image with clipped pixels marked.
-    Clipping,
-    /// Albedo at the first hit.
-    Albedo,
-    /// Normal at the first hit.
-    Normal,
-    /// Depth of the first hit.
-    Depth,
-    /// Variance of each pixel's mean.
-    Variance,
+named! {
+    /// A view of a render.
+    #[derive(Default)]
+    Shown {
+        #[default]
+        Picture, "picture", "Image", "The image itself.";
+        Error, "error", "Error", "The estimated standard error of each pixel, relative to the image's mean luminance.";
+        Samples, "samples", "Samples", "How many samples each pixel has had: with adaptive sampling they go where the error is.";
+        Precision, "precision", "Precision", "Where samples are dropped, f32 differs from f64, or rays start inside geometry.";
+        FalseColor, "false-color", "False colour", "Luminance in stops from middle grey, with the exposure and without the tone map.";
+        Clipping, "clipping", "Clipping", "The image; red where a channel is as bright as the screen can be, blue where all are black.";
+        Albedo, "albedo", "Albedo", "The share of the light that what is seen first reflects.";
+        Normal, "normal", "Normal", "Where what is seen first faces in the world: x red, y green, z blue.";
+        Depth, "depth", "Depth", "The distance of what is seen first along the camera's axis, scene units.";
+        Variance, "variance", "Variance", "The variance of each pixel's mean luminance, by the spread of its samples.";
+    }
 }
 
 impl Shown {
-    /// All views, with labels and descriptions.
-    pub const ALL: [(Self, &str, &str); 10] = [
-        (Self::Picture, "Image", "The image itself."),
-        (
-            Self::Error,
-            "Error",
-            "The estimated standard error of each pixel, relative to the image's mean luminance.",
-        ),
-        (
-            Self::Samples,
-            "Samples",
-            "How many samples each pixel has had: with adaptive sampling they go where the error is.",
-        ),
-        (
-            Self::Precision,
-            "Precision",
-            "Where samples are dropped, f32 differs from f64, or rays start inside geometry.",
-        ),
-        (
-            Self::FalseColor,
-            "False colour",
-            "Luminance in stops from middle grey, with the exposure and without the tone map.",
-        ),
-        (
-            Self::Clipping,
-            "Clipping",
-            "The image; red where a channel is as bright as the screen can be, blue where all are black.",
-        ),
-        (
-            Self::Albedo,
-            "Albedo",
-            "The share of the light that what is seen first reflects.",
-        ),
-        (
-            Self::Normal,
-            "Normal",
-            "Where what is seen first faces in the world: x red, y green, z blue.",
-        ),
-        (
-            Self::Depth,
-            "Depth",
-            "The distance of what is seen first along the camera's axis, scene units.",
-        ),
-        (
-            Self::Variance,
-            "Variance",
-            "The variance of each pixel's mean luminance, by the spread of its samples.",
-        ),
-    ];
-
     /// Whether its map is made of the film, not of the image alone.
     pub fn is_of_film(self) -> bool {
         !matches!(
@@ -129,7 +73,7 @@ impl Scale {
 
 /// Inputs of a film's maps.
 #[derive(Clone, Copy, Debug)]
-pub struct Source<'a> {
+pub struct FilmSource<'a> {
     pub film: &'a Film,
     /// Estimated error per pixel, if the image shown is denoised and has one.
     pub denoised_errors: Option<&'a [f32]>,
@@ -137,7 +81,7 @@ pub struct Source<'a> {
     pub world_units_per_unit: f64,
 }
 
-impl Source<'_> {
+impl FilmSource<'_> {
     /// Estimated error per pixel of the image shown.
     fn errors(&self) -> Vec<f32> {
         self.denoised_errors
@@ -167,7 +111,7 @@ pub fn map_of_image(image: &Image, view: &ViewSettings, shown: Shown) -> Option<
 }
 
 /// The map of a view of the film; `None` for other views.
-pub fn map_of_film(source: &Source<'_>, shown: Shown) -> Option<Map> {
+pub fn map_of_film(source: &FilmSource<'_>, shown: Shown) -> Option<Map> {
     let features = || Features::of(source.film, source.world_units_per_unit);
     Some(match shown {
         Shown::Picture | Shown::Precision | Shown::FalseColor | Shown::Clipping => return None,
@@ -290,7 +234,7 @@ pub struct PixelFacts {
 
 impl PixelFacts {
     /// The quantities of a film.
-    pub fn of(source: &Source<'_>) -> Self {
+    pub fn of(source: &FilmSource<'_>) -> Self {
         Self {
             errors: source.errors(),
             features: Features::of(source.film, source.world_units_per_unit),

@@ -94,7 +94,7 @@ impl KeptFilm {
             false => [0; 2],
         };
         let guide_samples = (0..film.pixel_count())
-            .map(|pixel| std::array::from_fn(|half| most[half].min(film.halves(pixel)[half].samples as u32)))
+            .map(|pixel| std::array::from_fn(|half| most[half].min(film.pixels[pixel][half].samples as u32)))
             .collect();
         Self {
             samples: vec![[first, first + samples]],
@@ -139,7 +139,7 @@ impl KeptFilm {
 
     /// Refuses a film with a pixel that has samples, but not enough of the first among them.
     fn check_seen(&self, is_enough: impl Fn([u32; 2], [f64; 2]) -> bool) -> Result<(), SumsError> {
-        let samples = |pixel: usize| self.film.halves(pixel).map(|half| half.samples);
+        let samples = |pixel: usize| self.film.pixels[pixel].map(|half| half.samples);
         match (0..self.film.pixel_count())
             .all(|pixel| is_enough(self.guide_samples[pixel], samples(pixel)) || samples(pixel) == [0.0; 2])
         {
@@ -201,7 +201,7 @@ impl KeptFilm {
         let (film, pixels) = (&self.film, self.film.pixel_count());
         let mut channels = Vec::new();
         for (half, word) in HALVES.into_iter().enumerate() {
-            let sums = |pixel: usize| film.halves(pixel)[half];
+            let sums = |pixel: usize| film.pixels[pixel][half];
             let deviations = FlatSamples::F32(
                 (0..pixels)
                     .map(|pixel| sums(pixel).squared_deviations.min(f64::from(f32::MAX)) as f32)
@@ -305,9 +305,8 @@ impl KeptFilm {
             }
         }
         for pixel in 0..self.film.pixel_count() {
-            let (own, more) = (self.film.halves(pixel), other.film.halves(pixel));
-            self.film
-                .set_halves(pixel, &[own[0].with(&more[0]), own[1].with(&more[1])]);
+            let (own, more) = (self.film.pixels[pixel], other.film.pixels[pixel]);
+            self.film.pixels[pixel] = [own[0].with(&more[0]), own[1].with(&more[1])];
             self.film.add_coverage(pixel, other.film.color(pixel)[3]);
             for (group, more) in other.film.lights(pixel).iter().enumerate() {
                 self.film.add_light(pixel, group, *more);

@@ -5,15 +5,15 @@ use crate::optics::real::{Real, Scalar};
 /// An entry of an alias table: drawing an entry uniformly, and keeping it or taking its alias, chooses each index in
 /// proportion to its weight.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct AliasEntry {
+pub struct AliasEntry {
     /// The probability, in [0, 1], that a draw of this entry is kept.
-    pub(super) threshold: f32,
+    pub threshold: f32,
     /// The entry to take instead when it is not kept.
-    pub(super) alias_index: u32,
+    pub alias_index: u32,
 }
 
 /// Vose's table. An entry of weight 0 is never chosen, unless all are 0: then each is always kept.
-pub(super) fn alias_table(weights: &[f64]) -> Vec<AliasEntry> {
+pub fn alias_table(weights: &[f64]) -> Vec<AliasEntry> {
     let total: f64 = weights.iter().sum();
     let heaviest = (0..weights.len()).max_by(|&a, &b| weights[a].total_cmp(&weights[b]));
     let entry = |index: usize| {

@@ -72,7 +72,7 @@ impl AreaShape {
     }
 
     /// Its triangles in the geometry's units, facing the target.
-    pub(super) fn mesh(&self, slot: u32) -> Mesh {
+    pub fn mesh(&self, slot: u32) -> Mesh {
         let AreaFrame { middle, across, up, .. } = self.frame();
         let (half_u, half_v) = (across * (0.5 * self.width), up * (-0.5 * self.height));
         match self.outline {
@@ -84,7 +84,7 @@ impl AreaShape {
     }
 
     /// The corners of its triangles, in the geometry's units.
-    pub(super) fn corners(&self) -> Vec<[DVec3; 3]> {
+    pub fn corners(&self) -> Vec<[DVec3; 3]> {
         let mesh = self.mesh(0);
         (0..mesh.triangles.len())
             .map(|triangle| mesh.corners(triangle))
@@ -92,7 +92,7 @@ impl AreaShape {
     }
 
     /// Whether one of its triangles is seen from a place: of a ball the near ones alone.
-    pub(super) fn shows(&self, [a, b, c]: &[DVec3; 3], place: DVec3) -> bool {
+    pub fn shows(&self, [a, b, c]: &[DVec3; 3], place: DVec3) -> bool {
         self.outline != Outline::Sphere || (b - a).cross(c - a).dot(place - a) > 0.0
     }
 }

@@ -14,12 +14,12 @@ const LEAN_COSINE: f64 = 0.9945;
 const SHARE_MAX: f64 = 0.08;
 
 /// True if more than a twelfth of the surface is coarse, by [`leaning_areas`].
-pub(super) fn is_coarse([all, leaning]: [f64; 2]) -> bool {
+pub fn is_coarse([all, leaning]: [f64; 2]) -> bool {
     leaning > SHARE_MAX * all
 }
 
 /// Twice the area of all triangles, and of those from which a normal leans far.
-pub(super) fn leaning_areas(part: &Part) -> [f64; 2] {
+pub fn leaning_areas(part: &Part) -> [f64; 2] {
     let of_triangle = |triangle: usize| {
         let [a, b, c] = exact(part.corners(triangle));
         let out = (b - a).cross(c - a);

@@ -61,7 +61,7 @@ impl Cluster {
 /// True if no vertex lies above any face's plane, on the side from which its corners are anticlockwise. A ray that leaves a
 /// face on that side then misses. Most other bodies are found out by their first faces; if the proof takes too long, the
 /// body counts as not convex.
-pub(super) fn is_convex(positions: &[[f32; 3]], triangles: &[[u32; 3]], loading: &Loading) -> Result<bool, Cancelled> {
+pub fn is_convex(positions: &[[f32; 3]], triangles: &[[u32; 3]], loading: &Loading) -> Result<bool, Cancelled> {
     let effort = AtomicUsize::new(0);
     let is_proven = is_proven(positions, triangles, &effort, &|| loading.check().is_ok());
     loading.check().map(|()| is_proven)

@@ -43,7 +43,7 @@ pub struct Geometry {
     /// True if the model is one convex body.
     model_is_convex: bool,
     /// See [`Geometry::is_coarse`].
-    model_is_coarse: bool,
+    pub is_coarse: bool,
     /// Centre of the model's bounding box, in world space.
     pub center_world: DVec3,
     /// Bounding radius of the model in world units: from that centre to the farthest vertex of a triangle; 1 without
@@ -106,7 +106,7 @@ impl Geometry {
         let [own, repeated] = [leaning_areas(&part), instanced.leaning_areas()];
         Ok(Self {
             model_is_convex: instanced.is_empty() && is_convex(&part.positions, &part.triangles, loading)?,
-            model_is_coarse: is_coarse([own[0] + repeated[0], own[1] + repeated[1]]),
+            is_coarse: is_coarse([own[0] + repeated[0], own[1] + repeated[1]]),
             model: Arc::new(part),
             around: Part::default(),
             instanced: Arc::new(instanced),
@@ -145,11 +145,6 @@ impl Geometry {
     /// Whether every ray that leaves a face on its outside misses: the scene is one convex body.
     pub fn is_convex(&self) -> bool {
         self.model_is_convex && self.around.is_empty()
-    }
-
-    /// Whether smooth normals lean so far from the model's triangles that shadows reveal their edges.
-    pub fn is_coarse(&self) -> bool {
-        self.model_is_coarse
     }
 
     pub fn triangle_count(&self) -> usize {
@@ -315,9 +310,9 @@ impl Geometry {
     #[inline]
     pub fn intersect_by(&self, level: Level, origin: [f32; 3], direction: [f32; 3], t_max: f32) -> Option<Hit> {
         let frame = RayFrame::new(origin.into(), direction.into());
-        let mut nearest = self.model.closest_hit(level, &frame, t_max);
+        let mut nearest = self.model.hit::<false>(level, &frame, t_max);
         let reach = nearest.map_or(t_max, |hit| hit.t);
-        if let Some(hit) = self.around.closest_hit(level, &frame, reach) {
+        if let Some(hit) = self.around.hit::<false>(level, &frame, reach) {
             let triangle = hit.triangle + self.model.triangles.len() as u32;
             nearest = Some(Hit { triangle, ..hit });
         }
@@ -341,8 +336,8 @@ impl Geometry {
     #[inline]
     pub fn occluded_by(&self, level: Level, origin: [f32; 3], direction: [f32; 3], t_max: f32) -> bool {
         let frame = RayFrame::new(origin.into(), direction.into());
-        self.model.is_hit(level, &frame, t_max)
-            || self.around.is_hit(level, &frame, t_max)
+        self.model.hit::<true>(level, &frame, t_max).is_some()
+            || self.around.hit::<true>(level, &frame, t_max).is_some()
             || (!self.instanced.is_empty() && self.instanced.hit::<true>(level, &frame, t_max).is_some())
     }
 
@@ -376,7 +371,7 @@ impl Geometry {
         let mut hits = [None; PACKET];
         let mut packet_hits = PacketHits::none(packet);
         let is_traced = self.trace_parts(entry_points, &mut packet_hits, |wide, entry_points, packet_hits| {
-            wide.closest_hits(level, packet, entry_points, packet_hits)
+            wide.hits::<false>(level, packet, entry_points, packet_hits)
         });
         for (lane, hit) in hits.iter_mut().enumerate() {
             *hit = match is_traced {
@@ -412,7 +407,7 @@ impl Geometry {
         let mut is_occluded = [false; PACKET];
         let mut packet_hits = PacketHits::none(packet);
         let is_traced = self.trace_parts(&[None; 2], &mut packet_hits, |wide, _, packet_hits| {
-            wide.any_hits(level, packet, packet_hits)
+            wide.hits::<true>(level, packet, None, packet_hits)
         });
         for (lane, is_occluded) in is_occluded.iter_mut().enumerate() {
             *is_occluded = match is_traced {

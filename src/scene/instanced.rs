@@ -15,7 +15,7 @@ use crate::parallel;
 
 /// Instances of repeated meshes. Their triangles are numbered instance by instance.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Instanced {
+pub struct Instanced {
     meshes: Vec<Part>,
     /// The instances, in the order of the hierarchy's leaves.
     instances: Vec<Instance>,
@@ -28,7 +28,7 @@ pub(super) struct Instanced {
 
 /// A mesh at its place, in the geometry's units.
 #[derive(Clone, Debug)]
-pub(super) struct Instance {
+pub struct Instance {
     mesh: usize,
     pub object: u32,
     /// The first of its triangles.
@@ -40,7 +40,7 @@ pub(super) struct Instance {
 
 /// A model's triangles and those of its instances, one by one.
 #[derive(Clone, Debug)]
-pub(super) struct Whole {
+pub struct Whole {
     pub part: Part,
     /// Number of each triangle of `part`: the model's own first, then the instances'.
     pub numbers: Vec<u32>,
@@ -58,7 +58,7 @@ impl Whole {
 }
 
 /// The traceable triangles of a repeated mesh.
-pub(super) struct Traceable {
+pub struct Traceable {
     /// Their vertices, each once.
     pub places: Vec<DVec3>,
     pub count: usize,

@@ -19,7 +19,7 @@ pub struct Hit {
 
 impl Hit {
     /// The hit at distance `t` from the areas into which the ray divides the triangle, opposite to its corners.
-    pub(super) fn of(t: f32, triangle: u32, [u, v, w]: [f32; 3]) -> Self {
+    pub fn of(t: f32, triangle: u32, [u, v, w]: [f32; 3]) -> Self {
         let area = u + v + w;
         Self {
             t,

@@ -226,7 +226,12 @@ pub fn light_sample<T: Scalar>(
         let uvs = uvs_at(geometry, triangle, weights, material.has_flag(HAS_BOX));
         let of_vertices = vertex_factors(geometry, material, triangle, weights);
         radiance = emission_at(emitters.textures, material, uvs, of_vertices);
-        multiply_by(emitters.textures, TextureTarget::OF_COAT, &T::each(|_| uvs), &mut coated);
+        multiply_by(
+            emitters.textures,
+            TextureTarget::OF_COAT,
+            &T::each(|_| uvs),
+            &mut coated,
+        );
     }
     if is_spot(material) {
         radiance = radiance * spot_share(material, -normal.dot(direction));

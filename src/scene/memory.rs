@@ -5,7 +5,7 @@
 const LARGE_PAGE: usize = 2 << 20;
 
 /// A vector with capacity `count`, in large pages if the system has them. Unused room takes no memory.
-pub(super) fn room_in_large_pages<E>(count: usize) -> Vec<E> {
+pub fn room_in_large_pages<E>(count: usize) -> Vec<E> {
     let elements: Vec<E> = Vec::with_capacity(count);
     #[cfg(target_os = "linux")]
     if count * size_of::<E>() >= 2 * LARGE_PAGE {
@@ -16,7 +16,7 @@ pub(super) fn room_in_large_pages<E>(count: usize) -> Vec<E> {
 
 /// The same elements in large pages, if the system has them: otherwise a CPU's address translation costs more than the read.
 /// The system moves them in place, without a copy.
-pub(super) fn in_large_pages<E>(elements: Vec<E>) -> Vec<E> {
+pub fn in_large_pages<E>(elements: Vec<E>) -> Vec<E> {
     #[cfg(target_os = "linux")]
     if size_of_val(&elements[..]) >= 2 * LARGE_PAGE {
         // MADV_COLLAPSE, which not every libc names: at once, since Linux 6.1.
@@ -47,7 +47,7 @@ const LINE: usize = 64;
 
 /// Prefetches an element into the cache, if the CPU supports it. Results do not depend on it.
 #[inline(always)]
-pub(super) fn prefetch<E>(elements: &[E], index: usize) {
+pub fn prefetch<E>(elements: &[E], index: usize) {
     #[cfg(target_arch = "x86_64")]
     if let Some(element) = elements.get(index) {
         use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};

@@ -56,7 +56,7 @@ impl Vertex {
     }
 
     /// The vertex with another normal, tangent, and sign of the bitangent.
-    pub(super) fn turned(&self, normal: [f32; 3], [x, y, z, side]: [f32; 4]) -> Self {
+    pub fn turned(&self, normal: [f32; 3], [x, y, z, side]: [f32; 4]) -> Self {
         const SIDE: u32 = 1 << 31;
         Self {
             normal,
@@ -109,7 +109,7 @@ pub struct Part {
 
 impl Part {
     /// Builds the hierarchy over the triangles that have been added, and puts them into its order, which it returns.
-    pub(super) fn build(&mut self, loading: &Loading) -> Result<Vec<u32>, Cancelled> {
+    pub fn build(&mut self, loading: &Loading) -> Result<Vec<u32>, Cancelled> {
         let corners = |triangle| self.corners(triangle as usize);
         let (hierarchy, order) = Hierarchy::new(self.triangles.len(), corners, loading)?;
         self.hierarchy = hierarchy;
@@ -118,7 +118,7 @@ impl Part {
     }
 
     /// The same triangles, to add more.
-    pub(super) fn without_hierarchy(&self) -> Self {
+    pub fn without_hierarchy(&self) -> Self {
         Self {
             positions: self.positions.clone(),
             vertices: self.vertices.clone(),
@@ -140,12 +140,12 @@ impl Part {
     }
 
     /// The CPU's hierarchy, built on first use.
-    pub(super) fn wide(&self) -> &Wide {
+    pub fn wide(&self) -> &Wide {
         self.hierarchy.wide(|triangle| self.corners(triangle as usize))
     }
 
     /// Memory in bytes, with the hierarchies built so far.
-    pub(super) fn bytes(&self) -> usize {
+    pub fn bytes(&self) -> usize {
         size_of_val(&self.positions[..])
             + size_of_val(&self.vertices[..])
             + size_of_val(&self.triangles[..])
@@ -160,7 +160,7 @@ impl Part {
     }
 
     /// Shading attributes of a triangle's vertices.
-    pub(super) fn vertices_of(&self, triangle: usize) -> [&Vertex; 3] {
+    pub fn vertices_of(&self, triangle: usize) -> [&Vertex; 3] {
         self.triangles[triangle].map(|vertex| &self.vertices[vertex as usize])
     }
 
@@ -169,20 +169,15 @@ impl Part {
     }
 
     /// The closest hit with 0 < t < `t_max`.
-    pub(super) fn closest_hit(&self, level: Level, frame: &RayFrame, t_max: f32) -> Option<Hit> {
+    pub fn hit<const ANY: bool>(&self, level: Level, frame: &RayFrame, t_max: f32) -> Option<Hit> {
         match self.is_empty() {
             true => None,
-            false => self.wide().closest_hit(level, frame, t_max),
+            false => self.wide().hit::<ANY>(level, frame, t_max),
         }
     }
 
-    /// True if any triangle is hit with 0 < t < `t_max`.
-    pub(super) fn is_hit(&self, level: Level, frame: &RayFrame, t_max: f32) -> bool {
-        !self.is_empty() && self.wide().any_hit(level, frame, t_max).is_some()
-    }
-
     /// Adds the chosen triangles of a mesh. Returns the number of those that lost their area by rounding.
-    pub(super) fn add(
+    pub fn add(
         &mut self,
         mesh: &Mesh,
         chosen: impl Iterator<Item = usize>,
@@ -239,17 +234,17 @@ impl Part {
 }
 
 /// Corners in double precision, in which their products are exact.
-pub(super) fn exact(corners: [[f32; 3]; 3]) -> [DVec3; 3] {
+pub fn exact(corners: [[f32; 3]; 3]) -> [DVec3; 3] {
     corners.map(|corner| DVec3::from_array(corner.map(f64::from)))
 }
 
 /// Whether a triangle's corners are finite.
-pub(super) fn is_finite(corners: &[DVec3; 3]) -> bool {
+pub fn is_finite(corners: &[DVec3; 3]) -> bool {
     corners.iter().all(|corner| corner.is_finite())
 }
 
 /// Whether a triangle can be traced: its corners are finite, and it has an area.
-pub(super) fn is_traceable(corners: [DVec3; 3]) -> bool {
+pub fn is_traceable(corners: [DVec3; 3]) -> bool {
     is_finite(&corners) && has_area(corners)
 }
 

@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::{mesh::Mesh, shapes, teapot};
 
 /// The slots, which are the objects as well, from the largest on.
-pub(super) const PARTS: [&str; 4] = ["teapot", "bowl", "ball", "bead"];
+pub const PARTS: [&str; 4] = ["teapot", "bowl", "ball", "bead"];
 
 /// Where the smaller parts stand, and how large they are: the teapot's body has a radius of 2 and its spout points to +X.
 const BOWL: DVec3 = DVec3::new(2.05, 0.0, 2.4);
@@ -15,7 +15,7 @@ const BALL: (DVec3, f64) = (DVec3::new(-1.25, 0.68, 2.45), 0.68);
 const BEAD: (DVec3, f64) = (DVec3::new(0.2, 0.36, 2.95), 0.36);
 
 /// The mesh: part after part.
-pub(super) fn mesh() -> Mesh {
+pub fn mesh() -> Mesh {
     let parts = [
         teapot::mesh(teapot::DEFAULT_SEGMENTS),
         moved(shapes::bowl(1), BOWL, 1.0),
@@ -28,7 +28,7 @@ pub(super) fn mesh() -> Mesh {
 }
 
 /// The triangles of each part.
-pub(super) fn triangles(mesh: &Mesh) -> impl Iterator<Item = Range<usize>> {
+pub fn triangles(mesh: &Mesh) -> impl Iterator<Item = Range<usize>> {
     let begin = |slot: usize| mesh.slots.partition_point(|of| (*of as usize) < slot);
     (0..PARTS.len()).map(move |slot| begin(slot)..begin(slot + 1))
 }

@@ -5,7 +5,7 @@ use std::time::Duration;
 use serde::Serialize;
 
 use super::references::{Effort, reference};
-use super::{Machine, Steps, StudyError, Watch, warmed};
+use super::{MachineInfo, Steps, StudyError, Watch, warmed};
 use crate::analysis::halves::Distance;
 use crate::document::Document;
 use crate::render::{EngineChoice, Session, StepDenoiser, StopReason};
@@ -52,8 +52,8 @@ pub struct DenoisedPoint {
 /// Error over time.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ConvergenceReport {
-    /// Machine of the measurement.
-    pub machine: Machine,
+    /// MachineInfo of the measurement.
+    pub machine: MachineInfo,
     /// Width in pixels.
     pub width: u32,
     /// Height in pixels.
@@ -115,7 +115,7 @@ pub fn convergence(
     let mut on_progress = |share: f64| steps.report("Reference", share);
     let reference = reference(&mut other, document, effort, &mut on_progress)?;
     Ok(ConvergenceReport {
-        machine: Machine::of(session.engine()),
+        machine: MachineInfo::of(session.engine()),
         width: document.render.width,
         height: document.render.height,
         stopped_by: progress.stopped_by,

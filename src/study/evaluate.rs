@@ -37,19 +37,12 @@ pub struct Albedo {
     pub standard_errors: [f64; 2],
 }
 
-/// The functions of an engine.
-enum Functions {
-    /// In f32.
-    Single(Prober),
-    /// On the CPU in f64.
-    Double,
-}
-
 /// Evaluates a material.
 pub struct Evaluator {
     materials: Vec<Material<f32>>,
     tables: Vec<f32>,
-    functions: Functions,
+    /// Functions of an engine; `None` for those in f64.
+    prober: Option<Prober>,
 }
 
 impl Evaluator {
@@ -61,14 +54,14 @@ impl Evaluator {
             ..material.clone()
         };
         let (materials, tables) = compile(&[plain]);
-        let functions = match precision {
-            Precision::Single => Functions::Single(Prober::open(engine)?),
-            Precision::Double => Functions::Double,
+        let prober = match precision {
+            Precision::Single => Some(Prober::open(engine)?),
+            Precision::Double => None,
         };
         Ok(Self {
             materials,
             tables,
-            functions,
+            prober,
         })
     }
 
@@ -87,8 +80,8 @@ impl Evaluator {
         };
         let questions: Vec<_> = pairs.iter().map(question).collect();
         let scene = self.scene();
-        let (values, densities): (Vec<_>, Vec<_>) = match &self.functions {
-            Functions::Single(prober) => (
+        let (values, densities): (Vec<_>, Vec<_>) = match &self.prober {
+            Some(prober) => (
                 prober
                     .materials(&scene, &questions)?
                     .into_iter()
@@ -100,7 +93,7 @@ impl Evaluator {
                     .map(f64::from)
                     .collect(),
             ),
-            Functions::Double => (
+            None => (
                 cpu::probe_materials::<f64>(&scene, &questions)
                     .into_iter()
                     .map(|value| value.to_f64())
@@ -132,9 +125,9 @@ impl Evaluator {
     }
 
     fn draw(&self, questions: &[DrawQuestion]) -> Result<Vec<DrawAnswer>, GpuError> {
-        match &self.functions {
-            Functions::Single(prober) => prober.draws(&self.scene(), questions),
-            Functions::Double => Ok(cpu::probe_draw::<f64>(&self.scene(), questions)),
+        match &self.prober {
+            Some(prober) => prober.draws(&self.scene(), questions),
+            None => Ok(cpu::probe_draw::<f64>(&self.scene(), questions)),
         }
     }
 

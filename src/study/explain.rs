@@ -7,7 +7,7 @@ use serde::Serialize;
 use crate::compile::slot_materials;
 use crate::cpu::integrator::is_sound;
 use crate::cpu::oracle::PathTracer;
-use crate::cpu::recorder::{Event, Source};
+use crate::cpu::recorder::{Event, LightSource};
 use crate::document::{Document, Strategy};
 use crate::job::Job;
 use crate::optics::random::Sequence;
@@ -72,7 +72,7 @@ pub fn explain(document: &Document, model: &Model, job: &Job, pixel: [u32; 2], s
 
 impl PathAccount {
     /// Contributions to the sample, in order.
-    pub fn contributions(&self) -> impl Iterator<Item = (Source, [f32; 3])> + '_ {
+    pub fn contributions(&self) -> impl Iterator<Item = (LightSource, [f32; 3])> + '_ {
         self.events.iter().filter_map(|event| match event {
             Event::Contribution { source, added, .. } => Some((*source, *added)),
             _ => None,

@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use serde::Serialize;
 
-use super::{Machine, Steps, StudyError, Watch, median, quantile, warmed, without_target};
+use super::{MachineInfo, Steps, StudyError, Watch, median, quantile, warmed, without_target};
 use crate::analysis::halves::{Distance, Halves};
 use crate::analysis::noise::noise;
 use crate::document::effect::{Effect, Switch};
@@ -74,7 +74,7 @@ pub enum EntryKind {
 
 /// A line of the ledger.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Entry {
+pub struct LedgerEntry {
     /// Name of the effect or setting.
     pub name: &'static str,
     pub label: String,
@@ -99,7 +99,7 @@ pub struct Entry {
     pub words: String,
 }
 
-impl Entry {
+impl LedgerEntry {
     /// Cost in time, in words.
     pub fn time_words(&self) -> String {
         let share = self.ms / self.ms_without;
@@ -121,7 +121,7 @@ impl Entry {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Ledger {
     /// Machine of the measurement.
-    pub machine: Machine,
+    pub machine: MachineInfo,
     /// Width in pixels.
     pub width: u32,
     /// Height in pixels.
@@ -129,13 +129,13 @@ pub struct Ledger {
     /// Milliseconds of one sample of every pixel of the document.
     pub ms_per_sample: f64,
     /// Entries: effects in the order of the plan, then settings.
-    pub entries: Vec<Entry>,
+    pub entries: Vec<LedgerEntry>,
 }
 
 impl Ledger {
     /// The line of an effect.
-    pub fn effect(&self, name: &str) -> Option<&Entry> {
-        let is_it = |entry: &&Entry| entry.kind == EntryKind::Effect && entry.name == name;
+    pub fn effect(&self, name: &str) -> Option<&LedgerEntry> {
+        let is_it = |entry: &&LedgerEntry| entry.kind == EntryKind::Effect && entry.name == name;
         self.entries.iter().find(is_it)
     }
 
@@ -170,14 +170,14 @@ pub fn ledger(document: &Document, options: &LedgerOptions, watch: &mut Watch<'_
         entries.push(entry(&document, rival, [&mut with, &mut without], options, &mut steps)?);
         steps.finish(1.0);
     }
-    let is_of_samples = |entry: &&Entry| entry.name != EffectId::Denoising.name();
+    let is_of_samples = |entry: &&LedgerEntry| entry.name != EffectId::Denoising.name();
     let times: Vec<f64> = entries
         .iter()
         .filter(is_of_samples)
         .map(|entry| entry.ms_with)
         .collect();
     Ok(Ledger {
-        machine: Machine::of(with.engine()),
+        machine: MachineInfo::of(with.engine()),
         width: document.render.width,
         height: document.render.height,
         ms_per_sample: median(&times),
@@ -297,9 +297,9 @@ fn setting_rivals(document: &Document) -> Vec<Rival> {
 
 impl Rival {
     /// Its line; with no words yet.
-    fn entry(self, [ms_with, ms_without]: [f64; 2], differences: &[f64], noise_share: f64) -> Entry {
+    fn entry(self, [ms_with, ms_without]: [f64; 2], differences: &[f64], noise_share: f64) -> LedgerEntry {
         let ms = median(differences);
-        Entry {
+        LedgerEntry {
             name: self.name,
             label: self.label,
             instead: self.instead,
@@ -323,7 +323,7 @@ fn entry(
     [with, without]: [&mut Session; 2],
     options: &LedgerOptions,
     steps: &mut Steps<'_, '_>,
-) -> Result<Entry, StudyError> {
+) -> Result<LedgerEntry, StudyError> {
     if rival.name == EffectId::Denoising.name() {
         return denoising(document, rival, with, options);
     }
@@ -366,7 +366,7 @@ fn denoising(
     rival: Rival,
     session: &mut Session,
     options: &LedgerOptions,
-) -> Result<Entry, StudyError> {
+) -> Result<LedgerEntry, StudyError> {
     let mut step_denoiser = StepDenoiser::new(document);
     warmed(session, document)?;
     let mut times = Vec::new();
@@ -410,7 +410,7 @@ fn variance_of_a_sample(session: &mut Session) -> Result<f64, StudyError> {
 }
 
 /// An entry in words: "Exact Fresnel: +2 % time, changes the image by 0.3 %".
-fn words(entry: &Entry) -> String {
+fn words(entry: &LedgerEntry) -> String {
     let mut parts = vec![entry.time_words()];
     if entry.noise_share.abs() >= NOISE_RESOLVED {
         let share = entry.noise_share;

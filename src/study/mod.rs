@@ -110,7 +110,7 @@ impl<'a, 'b> Steps<'a, 'b> {
 
 /// Machine of a measurement.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Machine {
+pub struct MachineInfo {
     pub version: &'static str,
     /// `gpu` or `cpu`.
     pub engine: &'static str,
@@ -120,7 +120,7 @@ pub struct Machine {
     pub driver: String,
 }
 
-impl Machine {
+impl MachineInfo {
     fn of(info: &EngineInfo) -> Self {
         Self {
             version: env!("CARGO_PKG_VERSION"),

@@ -10,7 +10,7 @@ use std::time::Duration;
 use serde::Serialize;
 
 use super::references::{Effort, Reference, reference};
-use super::{Machine, Steps, StudyError, Watch, warmed, without_target};
+use super::{MachineInfo, Steps, StudyError, Watch, warmed, without_target};
 use crate::analysis::halves::Distance;
 use crate::document::Document;
 use crate::job::film::Image;
@@ -58,7 +58,7 @@ impl RaceOptions {
 #[derive(Clone, Debug, Serialize)]
 pub struct Race {
     /// Machine of the race.
-    pub machine: Machine,
+    pub machine: MachineInfo,
     /// Width in pixels.
     pub width: u32,
     /// Height in pixels.
@@ -195,7 +195,7 @@ pub fn race(document: &Document, options: &RaceOptions, watch: &mut Watch<'_>) -
     }
     mark_front(&mut runners);
     Ok(Race {
-        machine: Machine::of(lanes[0].session.engine()),
+        machine: MachineInfo::of(lanes[0].session.engine()),
         width: document.render.width,
         height: document.render.height,
         seconds: options.seconds,

@@ -14,7 +14,7 @@ const SEED: u32 = 0x5eed_0f0f;
 const STEP: Duration = Duration::from_millis(100);
 
 /// A reference render of the requested precision.
-pub(super) struct Reference {
+pub struct Reference {
     /// Halves of its samples.
     pub halves: Halves,
     /// Estimated relative error.
@@ -23,7 +23,7 @@ pub(super) struct Reference {
 
 /// Requested precision of references.
 #[derive(Clone, Copy)]
-pub(super) struct Effort {
+pub struct Effort {
     /// Relative error to reach.
     pub noise: f64,
     /// Time limit in seconds.
@@ -34,7 +34,7 @@ pub(super) struct Effort {
 ///
 /// # Errors
 /// What the session can't render, and [`StudyError::Stopped`].
-pub(super) fn reference(
+pub fn reference(
     session: &mut Session,
     document: &Document,
     effort: Effort,

@@ -1,22 +1,34 @@
-//! The edge tint in closed form.
+//! The normal on which fuzz lies.
 
-use glossmith::optics::fresnel::{fresnel_metal, fresnel_schlick};
-use glossmith::optics::vector::{Vec3, vec3};
+use glossmith::compile::compile;
+use glossmith::document::{MaterialSettings, assign};
+use glossmith::optics::frame::frame_from_normal;
+use glossmith::optics::layer::{Layer, material_layers};
+use glossmith::optics::material::{Material, Surface};
+use glossmith::optics::numeric::normalize_or;
+use glossmith::optics::vector::vec3;
 
-/// At a cosine of 1/7 the tint is what is left of Schlick's reflectance; head-on and at grazing angles nothing changes.
+/// Fuzz stands on the coat's normal as far as there is a coat, else on that of the base (OpenPBR 1.1).
 #[test]
-fn the_edge_tint_is_what_is_left_at_82_degrees() {
-    let (f0, tint) = (vec3(0.9, 0.5, 0.2), vec3(0.3, 0.8, 1.0));
-    let seventh = 1.0 / 7.0;
-    let expected = fresnel_schlick(f0, seventh) * tint;
-    let found = fresnel_metal(f0, tint, seventh);
-    for (a, b) in found.to_f64().into_iter().zip(expected.to_f64()) {
-        assert!((a - b).abs() < 1e-12, "{a} {b}");
-    }
-    assert_eq!(fresnel_metal(f0, tint, 1.0), f0);
-    assert_eq!(fresnel_metal(f0, tint, 0.0), Vec3::splat(1.0));
-    for i in 0..=100 {
-        let value = fresnel_metal(vec3(0.0, 0.04, 1.0), Vec3::ZERO, f64::from(i) / 100.0);
-        assert!(value.to_f64().iter().all(|x| (0.0..=1.0).contains(x)), "{value:?}");
+fn fuzz_lies_on_the_coat() {
+    let (up, tilted) = (vec3(0.0, 0.0, 1.0), vec3(0.6, 0.0, 0.8));
+    for weight in [0.0, 0.3, 1.0] {
+        let mut settings = MaterialSettings::default();
+        for assignment in ["fuzz.weight=1", &format!("coat.weight={weight}")] {
+            assign(&mut settings, assignment).unwrap();
+        }
+        let (materials, tables) = compile(&[settings]);
+        let material: Material<f64> = materials[0].cast();
+        let albedo = |base, coat_normal| {
+            let surface = Surface {
+                frame: frame_from_normal(base),
+                coat_normal,
+                ..Surface::upwards(vec3(0.0, 0.6, 0.8))
+            };
+            material_layers(&material, &tables, &surface)[Layer::Fuzz].albedo.x
+        };
+        let mixed = normalize_or(tilted.mix(up, f64::from(weight as f32)), up);
+        let (found, expected) = (albedo(tilted, up), albedo(mixed, mixed));
+        assert!((found - expected).abs() < 1e-9, "{weight}: {found} for {expected}");
     }
 }

@@ -1,4 +1,4 @@
-//! The geometric lobe's density in f32 against quadrature in f64: section 4 of docs/MATHEMATICS.md as it is written there,
+//! The geometric lobe's density against quadrature, in f64: section 4 of docs/MATHEMATICS.md as it is written there,
 //! apart from the closed forms of `optics::chord`.
 
 use std::f64::consts::PI;
@@ -10,7 +10,6 @@ use glossmith::optics::curve::{CUSTOM_INTERVALS, Curve, curve_distance_max, curv
 use glossmith::optics::frame::Frame;
 use glossmith::optics::lobe::{Horizon, Lobe, LobeShape, lobe_evaluate, lobe_sample, stretch_from_anisotropy};
 use glossmith::optics::random::{Sequence, random_pair, random_state};
-use glossmith::optics::real::Scalar;
 use glossmith::optics::vector::{Vec3, vec3};
 use rayon::prelude::*;
 
@@ -21,35 +20,11 @@ const KINDS: [(f64, f64); 5] = [(0.0, 0.0), (0.7, 0.0), (0.0, 1.5), (0.0, 1.0 / 
 /// Range of u up to which a few nodes are enough.
 const PIECE_MAX: f64 = 0.5;
 
-/// The inputs of a case in a precision: those of f32, so that both see the same directions.
-struct Inputs<T> {
-    shape: LobeShape<'static, T>,
-    frame: Frame<T>,
-    wo: Vec3<T>,
-}
-
-fn inputs<T: Scalar>(case: &Case) -> Inputs<T> {
-    let single = |v: Vec3<f64>| Vec3::from_f32(v.to_f32());
-    let number = |x: f64| T::from_f64(f64::from(x as f32));
-    let frame = case.frame();
-    let shape = case.shape();
-    Inputs {
-        shape: LobeShape {
-            lobe: shape.lobe,
-            curve: shape.curve,
-            horizon: shape.horizon,
-            roughness: number(shape.roughness),
-            anisotropy: number(shape.anisotropy),
-            eta: number(shape.eta),
-            table: shape.table,
-        },
-        frame: Frame {
-            tangent: single(frame.tangent),
-            bitangent: single(frame.bitangent),
-            normal: single(frame.normal),
-        },
-        wo: single(case.wo()),
-    }
+/// The inputs of a case.
+struct Inputs {
+    shape: LobeShape<'static, f64>,
+    frame: Frame<f64>,
+    wo: Vec3<f64>,
 }
 
 /// Gauss–Legendre rules: for a smooth integrand, and for each piece of one with kinks.
@@ -68,7 +43,7 @@ impl Rules {
 }
 
 /// The lobe to integrate: its axis (the normal on the side that it fills) and its middle, by Snell's law or mirrored.
-fn axis_and_middle(inputs: &Inputs<f64>) -> [Vec3<f64>; 2] {
+fn axis_and_middle(inputs: &Inputs) -> [Vec3<f64>; 2] {
     let Inputs { shape, frame, wo } = inputs;
     let (normal, eta) = (frame.normal, shape.eta);
     let cosine = normal.dot(*wo);
@@ -82,7 +57,7 @@ fn axis_and_middle(inputs: &Inputs<f64>) -> [Vec3<f64>; 2] {
 
 /// The lobe that is integrated: behind the surface of the roughness x for which x (3 + 4 x) is |1 − 1/η|/2 of the facets'
 /// tilt, found by halving (mathematics, section 7).
-fn narrowed(inputs: &Inputs<f64>, axis: Vec3<f64>) -> Inputs<f64> {
+fn narrowed(inputs: &Inputs, axis: Vec3<f64>) -> Inputs {
     let Inputs { mut shape, frame, wo } = *inputs;
     if axis.dot(frame.normal) < 0.0 {
         let r = shape.roughness;
@@ -102,7 +77,7 @@ fn narrowed(inputs: &Inputs<f64>, axis: Vec3<f64>) -> Inputs<f64> {
 }
 
 /// The density after the horizon policy.
-fn reference(inputs: &Inputs<f64>, rules: &Rules, light: Vec3<f64>) -> f64 {
+fn reference(inputs: &Inputs, rules: &Rules, light: Vec3<f64>) -> f64 {
     let [axis, middle] = axis_and_middle(inputs);
     let inputs = &narrowed(inputs, axis);
     let raw = |light| raw_reference(inputs, rules, axis, middle, light);
@@ -116,7 +91,7 @@ fn reference(inputs: &Inputs<f64>, rules: &Rules, light: Vec3<f64>) -> f64 {
 }
 
 /// The density before the policy, in the frame where the lobe is a unit ball.
-fn raw_reference(inputs: &Inputs<f64>, rules: &Rules, axis: Vec3<f64>, middle: Vec3<f64>, light: Vec3<f64>) -> f64 {
+fn raw_reference(inputs: &Inputs, rules: &Rules, axis: Vec3<f64>, middle: Vec3<f64>, light: Vec3<f64>) -> f64 {
     let Inputs { shape, frame, .. } = inputs;
     let kappa = shape.roughness;
     if shape.anisotropy == 0.0 {
@@ -220,16 +195,12 @@ fn cases((curve, table): (Curve, &'static [f32])) -> Vec<Case> {
     cases
 }
 
-/// Direction number `i` that a case draws in f32; `None` where it is absorbed.
-fn drawn(case: &Case, single: &Inputs<f32>, i: u32) -> Option<Vec3<f32>> {
+/// Direction number `i` that a case draws; `None` where it is absorbed.
+fn drawn(case: &Case, Inputs { shape, frame, wo }: &Inputs, i: u32) -> Option<Vec3<f64>> {
     let state = random_state(17, 0, case.seed, i, Sequence::Independent);
-    let ([a, b], [c, _]) = (random_pair(state, 0), random_pair::<f32>(state, 1));
-    let sample = lobe_sample(&single.shape, &single.frame, single.frame.normal, single.wo, [a, b, c]);
+    let ([a, b], [c, _]) = (random_pair(state, 0), random_pair::<f64>(state, 1));
+    let sample = lobe_sample(shape, frame, frame.normal, *wo, [a, b, c]);
     (sample.weight > 0.0).then_some(sample.wi)
-}
-
-fn density<T: Scalar>(inputs: &Inputs<T>, light: Vec3<T>) -> T {
-    lobe_evaluate(&inputs.shape, &inputs.frame, inputs.frame.normal, inputs.wo, light)[1]
 }
 
 /// In f64 the closed forms are the quadrature, and the quadrature has converged.
@@ -238,23 +209,22 @@ fn closed_forms_are_the_quadrature() {
     let (rules, finer) = (Rules::new(128), Rules::new(256));
     let cases: Vec<Case> = curves().into_iter().flat_map(cases).collect();
     cases.par_iter().for_each(|case| {
-        let single = inputs::<f32>(case);
-        let double = Inputs {
+        let inputs = Inputs {
             shape: case.shape(),
             frame: case.frame(),
             wo: case.wo(),
         };
         // The long tail has none: a rule of a few nodes.
         let limit = if case.curve == Curve::LongTail { 5e-4 } else { 1e-6 };
-        for light in (0..8).filter_map(|i| drawn(case, &single, i)) {
-            let light = Vec3::<f64>::from_f32(light.to_f32()).normalize();
-            let expected = reference(&double, &rules, light);
-            let change = (reference(&double, &finer, light) / expected - 1.0).abs();
+        for light in (0..8).filter_map(|i| drawn(case, &inputs, i)) {
+            let expected = reference(&inputs, &rules, light);
+            let change = (reference(&inputs, &finer, light) / expected - 1.0).abs();
             assert!(
                 change < 1e-8,
                 "{case:?}: finer rules change the reference by {change:e}"
             );
-            let error = (density(&double, light) / expected - 1.0).abs();
+            let [_, found] = lobe_evaluate(&inputs.shape, &inputs.frame, inputs.frame.normal, inputs.wo, light);
+            let error = (found / expected - 1.0).abs();
             assert!(error < limit, "{case:?} {light:?}: off by {error:e}");
         }
     });

@@ -4,12 +4,10 @@ use std::collections::HashSet;
 
 use glossmith::optics::curve::Curve;
 use glossmith::optics::fresnel::{
-    Fresnel, FresnelTerms, METALS, fresnel, fresnel_conductor, fresnel_dielectric, fresnel_f0, fresnel_left,
-    fresnel_schlick, fresnel_transmitted,
+    METALS, fresnel_conductor, fresnel_dielectric, fresnel_f0, fresnel_metal, fresnel_schlick, fresnel_transmitted,
 };
 use glossmith::optics::lobe::{Horizon, Lobe, LobeShape, MIRROR_WIDTH, is_mirror, lobe_sample};
 use glossmith::optics::random::{Sequence, random_pair, random_pair_bits, random_state};
-use glossmith::optics::thin_film::{FilmTerms, film_path};
 use glossmith::optics::vector::{Vec3, vec3};
 
 use crate::lobe_cases::Case;
@@ -73,53 +71,6 @@ fn what_is_let_through_keeps_its_digits() {
     }
 }
 
-/// What a facet leaves over is one minus what it would reflect untinted.
-#[test]
-fn what_a_facet_leaves_over_is_what_it_does_not_reflect() {
-    for has_film in [false, true] {
-        let terms = FresnelTerms {
-            model: Fresnel::Dielectric,
-            has_film,
-            film: FilmTerms {
-                weight: 0.6,
-                ior: 1.4,
-                path: Vec3::from_f64(film_path(0.5).to_f64()),
-                ..FilmTerms::none_over(1.5)
-            },
-            metal_f0: vec3(0.9, 0.6, 0.2),
-            metalness: 0.0,
-            tint: vec3(1.0, 0.8, 0.1),
-            metal_tint: vec3(1.0, 1.0, 1.0),
-            edge_tint: vec3(0.5, 1.0, 0.9),
-            weight: 0.7,
-            ior: 1.5,
-            eta: vec3(0.2, 0.9, 1.1),
-            k: vec3(3.9, 2.4, 2.1),
-            before: 1.0,
-        };
-        for cosine in [0.02_f64, 0.3, 0.8, 1.0] {
-            let behind = (1.0 - (1.0 - cosine * cosine) / 2.25).sqrt();
-            let sum = fresnel(&terms.untinted(), cosine) + fresnel_left(&terms, cosine, behind);
-            let off = (sum - vec3(1.0, 1.0, 1.0)).map(f64::abs).max_component();
-            assert!(off < 1e-12, "at {cosine}, film {has_film}: {sum:?}");
-        }
-    }
-}
-
-/// At Brewster's angle all that is reflected is polarised across: half of ((n^2 - 1)/(n^2 + 1))^2.
-#[test]
-fn nothing_parallel_is_reflected_at_brewsters_angle() {
-    for ior in INDICES {
-        let square = ior * ior;
-        let expected = 0.5 * ((square - 1.0) / (square + 1.0)).powi(2);
-        let value = fresnel_dielectric(ior.atan().cos(), ior);
-        assert!(
-            (value - expected).abs() < 1e-13,
-            "index {ior}: {value}, expected {expected}"
-        );
-    }
-}
-
 /// Fresnel's equations with a complex index, in complex numbers.
 fn complex_fresnel(cosine: f64, eta: f64, k: f64) -> f64 {
     // (eta + ik)^2, and the root of that less the squared sine.
@@ -136,48 +87,32 @@ fn complex_fresnel(cosine: f64, eta: f64, k: f64) -> f64 {
 
 #[test]
 fn conductors_follow_the_complex_equations() {
-    for metal in METALS {
-        for channel in 0..3 {
-            let (eta, k) = (metal.eta[channel], metal.k[channel]);
-            for step in 0..=100 {
-                let cosine = f64::from(step) / 100.0;
-                let (value, expected) = (fresnel_conductor(cosine, eta, k), complex_fresnel(cosine, eta, k));
-                let what = format!("{} channel {channel} at cosine {cosine}", metal.name);
-                assert!((value - expected).abs() < 1e-9, "{what}: {value}, expected {expected}");
-            }
-            let head_on = ((eta - 1.0).powi(2) + k * k) / ((eta + 1.0).powi(2) + k * k);
-            assert!(
-                (fresnel_conductor(1.0, eta, k) - head_on).abs() < 1e-12,
-                "{}",
-                metal.name
-            );
-            assert!((fresnel_conductor(0.0, eta, k) - 1.0).abs() < 1e-12, "{}", metal.name);
-        }
-    }
-}
-
-/// A conductor that absorbs nothing is a dielectric.
-#[test]
-fn conductors_without_absorption_are_dielectrics() {
-    for ior in INDICES {
+    let of_metals = METALS.iter().flat_map(|metal| std::iter::zip(metal.eta, metal.k));
+    // A conductor that absorbs nothing is a dielectric.
+    for (eta, k) in of_metals.chain(INDICES.map(|index| (index, 0.0))) {
         for step in 0..=100 {
             let cosine = f64::from(step) / 100.0;
-            let (value, expected) = (fresnel_conductor(cosine, ior, 0.0), fresnel_dielectric(cosine, ior));
-            assert!(
-                (value - expected).abs() < 1e-7,
-                "index {ior}, cosine {cosine}: {value}, expected {expected}"
-            );
+            let (value, expected) = (fresnel_conductor(cosine, eta, k), complex_fresnel(cosine, eta, k));
+            let what = format!("{eta} + {k}i at cosine {cosine}");
+            assert!((value - expected).abs() < 1e-7, "{what}: {value}, expected {expected}");
         }
     }
 }
 
+/// At a cosine of 1/7 the edge tint is what is left of Schlick's reflectance; head-on and at grazing angles nothing changes.
 #[test]
-fn schlick_runs_from_normal_incidence_to_one() {
-    let f0 = vec3(0.04, 0.5, 1.0);
-    assert_eq!(fresnel_schlick(f0, 1.0), f0);
-    assert_eq!(fresnel_schlick(f0, 0.0), Vec3::splat(1.0));
+fn metals_of_colours_have_their_closed_values() {
+    let (f0, tint, seventh) = (vec3(0.04, 0.5, 1.0), vec3(0.3, 0.8, 1.0), 1.0 / 7.0);
     // At 60 degrees 1 - cos is a half: 1/32 of the way.
     assert!((fresnel_schlick(f0, 0.5_f64).x - (0.04 + 0.96 / 32.0)).abs() < 1e-15);
+    let off = fresnel_metal(f0, tint, seventh) - fresnel_schlick(f0, seventh) * tint;
+    assert!(off.map(f64::abs).max_component() < 1e-12, "{off:?}");
+    for tint in [tint, Vec3::splat(1.0)] {
+        assert_eq!(
+            [1.0, 0.0].map(|cosine| fresnel_metal(f0, tint, cosine)),
+            [f0, Vec3::splat(1.0)]
+        );
+    }
 }
 
 /// The first 2^k samples of a pair, and every aligned block of as many after them: one in each elementary interval, for

@@ -1,9 +1,7 @@
-//! Glass made of facets, each of which is drawn once and then mirrors or refracts: samples against the density that light
-//! sampling competes with, and their weights.
+//! Glass made of facets, each of which is drawn once and then mirrors or refracts: the density that light sampling competes
+//! with, and the weights of samples. That samples follow it: `material_samples.rs`.
 
-use glossmith::analysis::chi_square::{PolarGrid, sidak_level, test_samples};
-use glossmith::compile::compile;
-use glossmith::document::{MaterialSettings, assign};
+use crate::material_samples::compiled;
 use glossmith::optics::frame::frame_from_normal;
 use glossmith::optics::layer::{
     Layers, MaterialNumbers, MaterialSample, material_evaluate, material_layers, material_sample,
@@ -12,25 +10,13 @@ use glossmith::optics::material::{Material, Surface};
 use glossmith::optics::random::{Sequence, random_pair, random_state};
 use glossmith::optics::vector::{Vec3, vec3};
 
-/// Samples of a case, of which another index of refraction is seen.
-const SAMPLES: u32 = 20_000;
-
 /// Roughnesses, and indices of refraction, on whose inside the critical angle is met: 41.8 and 25.6 degrees.
-const CASES: [&[&str]; 5] = [
-    &["specular.lobe=ggx", "specular.roughness=0.3", "specular.ior=1.5"],
-    &["specular.lobe=ggx", "specular.roughness=0.6", "specular.ior=2.31"],
-    &[
-        "specular.lobe=ggx",
-        "specular.roughness=0.5",
-        "specular.anisotropy=0.5",
-        "transmission.weight=0.6",
-    ],
-    &["specular.lobe=ggx-ndf", "specular.roughness=0.5", "specular.ior=1.5"],
-    &[
-        "specular.lobe=blinn-phong",
-        "specular.roughness=0.4",
-        "specular.ior=1.5",
-    ],
+const CASES: [&str; 5] = [
+    "specular.lobe=ggx specular.roughness=0.3 specular.ior=1.5",
+    "specular.lobe=ggx specular.roughness=0.6 specular.ior=2.31",
+    "specular.lobe=ggx specular.roughness=0.5 specular.anisotropy=0.5 transmission.weight=0.6",
+    "specular.lobe=ggx-ndf specular.roughness=0.5 specular.ior=1.5",
+    "specular.lobe=blinn-phong specular.roughness=0.4 specular.ior=1.5",
 ];
 
 /// Angles of view, and whether they are from within.
@@ -44,13 +30,8 @@ struct Case {
 }
 
 impl Case {
-    fn new(assignments: &[&str], (angle_deg, is_inside): (f64, bool)) -> Self {
-        let mut settings = MaterialSettings::default();
-        let glass = ["base.metalness=0", "base.color=1,1,1", "transmission.weight=1"];
-        for assignment in glass.iter().chain(assignments) {
-            assign(&mut settings, assignment).unwrap();
-        }
-        let (materials, tables) = compile(&[settings]);
+    fn new(assignments: &str, (angle_deg, is_inside): (f64, bool)) -> Self {
+        let (materials, tables) = compiled(&format!("transmission.weight=1 {assignments}"));
         let (sin, cos) = f64::to_radians(angle_deg).sin_cos();
         let normal = vec3(0.0, 0.0, 1.0);
         let surface = Surface {
@@ -88,46 +69,12 @@ impl Case {
         let (alone, weighed) = (value(0.0), value(1.0));
         if weighed > 0.0 { alone / weighed - 1.0 } else { 0.0 }
     }
-
-    fn p_value(&self, supposed: &Self) -> f64 {
-        let draw = |i| {
-            let drawn = self.draw(i);
-            (drawn.throughput.max_component() > 0.0).then_some(drawn.wi)
-        };
-        let samples: Vec<_> = (0..SAMPLES).map(draw).collect();
-        let normal = self.surface.normal;
-        let middle = frame_from_normal(self.surface.wo.mirrored_about(normal));
-        let grid = PolarGrid::following(middle, 8, 8, samples.iter().flatten().take(4000).copied());
-        test_samples(&grid, &samples, &[normal], |wi| supposed.density(wi)).p_value
-    }
-}
-
-#[test]
-fn samples_follow_the_density_that_light_sampling_competes_with() {
-    // Where there is a base, too, what a direction tells is the share of the layers that it may have come from.
-    let cases = CASES.iter().filter(|case| !case.contains(&"transmission.weight=0.6"));
-    let level = sidak_level(1e-3, VIEWS.len() * (CASES.len() - 1));
-    for assignments in cases {
-        for view in VIEWS {
-            let case = Case::new(assignments, view);
-            let p = case.p_value(&case);
-            assert!(p > level, "{assignments:?} seen at {view:?}: p = {p:.1e}");
-        }
-        let near_critical = VIEWS[VIEWS.len() - 1];
-        let mut wrong = Case::new(assignments, near_critical);
-        wrong.material.ior *= 1.03;
-        let p = Case::new(assignments, near_critical).p_value(&wrong);
-        assert!(
-            p < level,
-            "{assignments:?}: another index of refraction is not seen, p = {p:.1e}"
-        );
-    }
 }
 
 /// What a direction was drawn with is what it is weighed with when light is drawn towards it.
 #[test]
 fn densities_of_samples_are_those_that_compete() {
-    for assignments in CASES.iter().filter(|case| !case.contains(&"transmission.weight=0.6")) {
+    for assignments in CASES.iter().filter(|case| !case.contains("transmission.weight=0.6")) {
         for view in VIEWS {
             let case = Case::new(assignments, view);
             for i in 0..2000 {
@@ -137,7 +84,7 @@ fn densities_of_samples_are_those_that_compete() {
                 let is_seen = drawn.throughput.max_component() > 0.0;
                 assert!(
                     !is_seen || off < 1e-6,
-                    "{assignments:?} seen at {view:?}: {} told as {told}",
+                    "{assignments} seen at {view:?}: {} told as {told}",
                     drawn.density
                 );
             }
@@ -148,8 +95,8 @@ fn densities_of_samples_are_those_that_compete() {
 /// Near the critical angle some facets let through nearly all, others nothing: still no path grows.
 #[test]
 fn no_sample_of_visible_facets_outweighs_the_others() {
-    for assignments in CASES.iter().filter(|case| case.contains(&"specular.lobe=ggx")) {
-        let single = [assignments, &["specular.multiple_scattering=off"][..]].concat();
+    for assignments in CASES.iter().filter(|case| case.contains("specular.lobe=ggx ")) {
+        let single = format!("{assignments} specular.multiple_scattering=off");
         for view in VIEWS {
             let case = Case::new(&single, view);
             let most = (0..20_000)
@@ -157,12 +104,12 @@ fn no_sample_of_visible_facets_outweighs_the_others() {
                 .fold(0.0, f64::max);
             // What is rare is drawn one time in twenty at least. A base takes 0.4 of the samples, whatever the facet: what
             // mirrors all weighs 1/0.6 then.
-            let limit = if assignments.contains(&"transmission.weight=0.6") {
+            let limit = if assignments.contains("transmission.weight=0.6") {
                 1.7
             } else {
                 1.0 / 0.95 + 1e-9
             };
-            assert!(most <= limit, "{assignments:?} seen at {view:?}: {most}");
+            assert!(most <= limit, "{assignments} seen at {view:?}: {most}");
         }
     }
 }

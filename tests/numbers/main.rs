@@ -15,3 +15,4 @@ mod statistics;
 #[path = "../suite/support.rs"]
 mod support;
 mod twins;
+mod walk;

@@ -17,8 +17,20 @@ const SAMPLES: u32 = 20_000;
 /// Views: angle to the normal, turn about it, and how far the shading normal leans towards the viewer, degrees.
 const VIEWS: [[f64; 3]; 3] = [[10.0, 0.0, 0.0], [55.0, 35.0, 0.0], [75.0, 0.0, 10.0]];
 
-/// What is drawn, and what makes another density of it: films over both bases, coats on everything, fuzz alone and on gloss.
-const CASES: [(&str, &str); 13] = [
+/// What is drawn, and what makes another density of it: glass of facets, films over both bases, coats on everything, fuzz alone and on gloss.
+const CASES: [(&str, &str); 16] = [
+    (
+        "transmission.weight=1 specular.lobe=ggx specular.roughness=0.6 specular.ior=2.31",
+        "specular.ior=2",
+    ),
+    (
+        "transmission.weight=1 specular.lobe=ggx-ndf specular.roughness=0.5",
+        "specular.roughness=0.55",
+    ),
+    (
+        "transmission.weight=1 specular.lobe=blinn-phong specular.roughness=0.4",
+        "specular.roughness=0.45",
+    ),
     (
         "thin_film.weight=1 thin_film.ior=2 thin_film.thickness=0.15 specular.lobe=ggx specular.roughness=0.5 \
          base.color=0.02,0.02,0.02",
@@ -76,7 +88,8 @@ const CASES: [(&str, &str); 13] = [
     ),
 ];
 
-fn compiled(assignments: &str) -> (Vec<Material<f32>>, Vec<f32>) {
+/// The default material but for assignments on a white dielectric.
+pub fn compiled(assignments: &str) -> (Vec<Material<f32>>, Vec<f32>) {
     let mut settings = MaterialSettings::default();
     let dielectric = "base.metalness=0 base.color=1,1,1 specular.fresnel=dielectric";
     for assignment in dielectric.split(' ').chain(assignments.split_whitespace()) {

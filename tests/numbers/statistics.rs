@@ -1,4 +1,4 @@
-//! χ² of every sampler against its density, in f64, and proof that the test finds a density that is wrong by 2 %.
+//! χ² of every sampler against its density, in f64.
 
 use crate::lobe_cases::{ANGLES_DEG, Case, ROUGHNESS, is_quick, lobes_and_curves, lobes_and_quick_curves};
 use glossmith::analysis::chi_square::{ChiSquare, PolarGrid, sidak_level, test_samples, upper_tail};
@@ -15,8 +15,8 @@ use std::f64::consts::{PI, TAU};
 /// Probability that chance alone fails a right sampler, over all cases of a test.
 const LEVEL: f64 = 1e-3;
 
-/// Samples of a case: they see a density that is off by 13 % in half of its cells with 99.9 %. What is off by 2 % is seen by a
-/// million samples below, as by `glossmith check`.
+/// Samples of a case: they see a density that is off by 13 % in half of its cells with 99.9 %. What is off by 2 % is seen by
+/// the samples of `glossmith check` (`tests/suite/check.rs`).
 const SAMPLES: u32 = 10_000;
 /// Degrees of freedom that are enough.
 const CELLS: u32 = 40;
@@ -40,13 +40,8 @@ fn drawn(case: &Case, count: u32) -> Vec<Option<Vec3<f64>>> {
     (0..count).map(|i| kept(draw(case, i))).collect()
 }
 
-/// The test of samples against the density times `factor`, of the lobe with `roughness_factor` times the roughness.
-fn chi_square(
-    case: &Case,
-    samples: &[Option<Vec3<f64>>],
-    roughness_factor: f64,
-    factor: impl Fn(Vec3<f64>) -> f64,
-) -> ChiSquare {
+/// The test of samples against the density.
+fn chi_square(case: &Case, samples: &[Option<Vec3<f64>>]) -> ChiSquare {
     let mirror = case.middle();
     let grid = PolarGrid::following(
         frame_from_normal(mirror),
@@ -54,14 +49,12 @@ fn chi_square(
         12,
         samples.iter().flatten().take(4000).copied(),
     );
-    let mut shape = case.shape();
-    shape.roughness *= roughness_factor;
-    let (frame, normal, wo) = (case.frame(), case.surface_normal(), case.wo());
+    let (shape, frame, normal, wo) = (case.shape(), case.frame(), case.surface_normal(), case.wo());
     // Both horizons, the plane at which Phong's lobe ends, and what the mirror policy makes of them.
     let folded = |plane: Vec3<f64>| plane.reflected_at_plane(normal);
     let cuts = [normal, frame.normal, mirror, folded(frame.normal), folded(mirror)];
     test_samples(&grid, samples, &cuts, |wi| {
-        lobe_evaluate(&shape, &frame, normal, wo, wi)[1] * factor(wi)
+        lobe_evaluate(&shape, &frame, normal, wo, wi)[1]
     })
 }
 
@@ -76,7 +69,7 @@ fn assert_follow(cases: &[Case], share: f64) {
     let outcomes: Vec<_> = cases
         .par_iter()
         .map(|case| {
-            let test = |samples| chi_square(case, &drawn(case, samples), 1.0, |_| 1.0);
+            let test = |samples| chi_square(case, &drawn(case, samples));
             let found = test(SAMPLES);
             // What has too few cells gets more samples.
             let is_coarse = found.degrees_of_freedom < CELLS;
@@ -112,10 +105,13 @@ fn assert_follow(cases: &[Case], share: f64) {
     );
 }
 
-#[test]
-fn samples_follow_their_densities() {
+/// Of the lobes whose curve is quick to integrate, or of the others.
+fn assert_flat_follow(quick: bool) {
     let mut cases = Vec::new();
     for (lobe, curve) in lobes_and_curves() {
+        if is_quick(curve) != quick {
+            continue;
+        }
         // Above a flat surface the policies differ only for the lobe that draws below it, and not by its curve: so slow
         // curves have the rest of theirs in `make test-thorough`.
         let policies = if lobe == Lobe::Geometric && (is_quick(curve) || cfg!(feature = "thorough")) {
@@ -128,6 +124,16 @@ fn samples_follow_their_densities() {
         }
     }
     assert_all_follow(&cases);
+}
+
+#[test]
+fn samples_follow_their_densities() {
+    assert_flat_follow(true);
+}
+
+#[test]
+fn samples_of_slow_curves_follow_their_densities() {
+    assert_flat_follow(false);
 }
 
 /// Of the lobes that can be stretched.
@@ -179,30 +185,33 @@ fn refracted_samples_follow_their_densities() {
 }
 
 /// The microfacet lobes, each facet refracting by itself.
-fn assert_refracted_at_facets_follow(indices: &[f64], share: f64) {
+fn assert_refracted_at_facets_follow(eta: f64, share: f64) {
     let mut cases = Vec::new();
     for &lobe in Lobe::ALL.iter().filter(|lobe| lobe.facets() != Facets::None) {
-        for &eta in indices {
-            let stretched: &[f64] = if lobe.is_anisotropic() { &[0.0, 0.7] } else { &[0.0] };
-            let grid = Case::grid(lobe, Curve::Sqrt, Horizon::Mirror, stretched, ROUGHNESS, ANGLES_DEG);
-            // Beyond the critical angle narrow lobes refract next to nothing.
-            let is_refracted = |case: &Case| eta > 1.0 || case.angle_deg < 45.0 || case.roughness >= 0.3;
-            let grid = grid.into_iter().filter(is_refracted).collect();
-            cases.extend(refracting(grid, eta, cases.len()));
-        }
+        let stretched: &[f64] = if lobe.is_anisotropic() { &[0.0, 0.7] } else { &[0.0] };
+        let grid = Case::grid(lobe, Curve::Sqrt, Horizon::Mirror, stretched, ROUGHNESS, ANGLES_DEG);
+        // Beyond the critical angle narrow lobes refract next to nothing.
+        let is_refracted = |case: &Case| eta > 1.0 || case.angle_deg < 45.0 || case.roughness >= 0.3;
+        let grid = grid.into_iter().filter(is_refracted).collect();
+        cases.extend(refracting(grid, eta, cases.len()));
     }
     assert_follow(&cases, share);
 }
 
 #[test]
 fn samples_refracted_at_facets_follow_their_densities() {
-    assert_refracted_at_facets_follow(&[1.5, 2.4], 0.95);
+    assert_refracted_at_facets_follow(1.5, 0.95);
+}
+
+#[test]
+fn samples_refracted_at_facets_of_diamond_follow_their_densities() {
+    assert_refracted_at_facets_follow(2.4, 0.95);
 }
 
 #[test]
 fn samples_refracted_out_of_glass_at_facets_follow_their_densities() {
     // Beyond the critical angle facets let light out into a few cells only.
-    assert_refracted_at_facets_follow(&[1.0 / 1.5], 0.68);
+    assert_refracted_at_facets_follow(1.0 / 1.5, 0.68);
 }
 
 /// The cases with another index, and seeds of their own.
@@ -259,66 +268,6 @@ fn weights_are_evaluate_over_density() {
     }
 }
 
-/// A density that is too high by 2 % on one side and too low on the other, and one of a roughness 2 % too high: both are
-/// found with enough samples, and the right one still passes with as many.
-#[test]
-fn a_density_off_by_two_per_cent_fails() {
-    const MANY: u32 = 1_000_000;
-    let lobes = [
-        (Lobe::Geometric, Curve::Custom),
-        (Lobe::Geometric, Curve::LongTail),
-        (Lobe::Ggx, Curve::Sqrt),
-    ];
-    lobes.into_par_iter().for_each(|(lobe, curve)| {
-        for case in Case::grid(lobe, curve, Horizon::Mirror, &[0.0], &[0.3], &[30.0]) {
-            let samples = drawn(&case, MANY);
-            let tilted = chi_square(&case, &samples, 1.0, |wi| if wi.y > 0.0 { 1.02 } else { 0.98 });
-            assert!(tilted.p_value < 1e-6, "{case:?}: {tilted:?}");
-            let wide = chi_square(&case, &samples, 1.02, |_| 1.0);
-            assert!(wide.p_value < 1e-6, "{case:?}: {wide:?}");
-            let right = chi_square(&case, &samples, 1.0, |_| 1.0);
-            assert!(right.p_value > 1e-5, "{case:?}: {right:?}");
-        }
-    });
-}
-
-/// A density that misses 2 % of the samples is found even where it is right in shape.
-#[test]
-fn a_density_that_adds_to_less_than_one_fails() {
-    let case = Case::new(Lobe::Geometric, Curve::Sqrt, Horizon::Mirror, 0.6, 60.0);
-    let dimmed = chi_square(&case, &drawn(&case, 50_000), 1.0, |_| 0.98);
-    assert!(dimmed.p_value < 1e-9, "{dimmed:?}");
-}
-
-#[test]
-fn cells_cover_the_sphere_once() {
-    let frame = frame_from_normal(vec3(0.6, 0.0, 0.8));
-    let pilot = (0..1000).map(|i| {
-        let z: f64 = 1.0 - (f64::from(i) / 1000.0).powi(2);
-        vec3((1.0 - z * z).sqrt(), 0.0, z)
-    });
-    for grid in [
-        PolarGrid::following(frame, 9, 7, pilot),
-        PolarGrid::equal_area(frame, 9, 7),
-    ] {
-        let uniform = 0.25 * std::f64::consts::FRAC_1_PI;
-        let total: f64 = grid.probabilities(100_000, &[], |_| uniform).iter().sum();
-        assert!((total - 1.0).abs() < 1e-4, "{total}");
-        // Each cell's middle lies in that cell.
-        for cell in 0..grid.cells() {
-            let patch = grid.patch(cell);
-            let (polar, azimuth) = (middle(patch.polar_rad), middle(patch.azimuth_rad));
-            let local = vec3(polar.sin() * azimuth.cos(), polar.sin() * azimuth.sin(), polar.cos());
-            let direction = glossmith::optics::frame::world_from_local(&frame, local);
-            assert_eq!(grid.cell(direction), cell, "{patch:?}");
-        }
-    }
-}
-
-fn middle([low, high]: [f64; 2]) -> f64 {
-    0.5 * (low + high)
-}
-
 #[track_caller]
 fn assert_near(found: f64, expected: f64, tolerance: f64) {
     let error = (found / expected - 1.0).abs();
@@ -336,20 +285,6 @@ fn the_tail_of_chi_square_is_a_poisson_sum_for_even_degrees_of_freedom() {
             });
             let expected = (-x).exp() * (1.0 + terms.sum::<f64>());
             assert_near(upper_tail(2.0 * x, f64::from(2 * n)), expected, 1e-12);
-        }
-    }
-    // Odd ones step by the recurrence Γ(a+1, x)/Γ(a+1) − Γ(a, x)/Γ(a) = x^a e^−x / Γ(a+1), with Γ(1/2) = √π.
-    let mut ln_gamma = 0.5 * PI.ln();
-    for a in (0..2000).map(|i| f64::from(i) + 0.5) {
-        ln_gamma += a.ln();
-        for share in [0.3, 0.9, 1.0, 1.1, 1.6] {
-            let x: f64 = a * share;
-            let step = (a * x.ln() - x - ln_gamma).exp();
-            let found = upper_tail(2.0 * x, 2.0 * (a + 1.0)) - upper_tail(2.0 * x, 2.0 * a);
-            assert!(
-                (found - step).abs() < 1e-10 * (1.0 + step),
-                "{a}, {x}: {found} instead of {step}"
-            );
         }
     }
     for (freedom, quantile) in [
@@ -374,9 +309,6 @@ fn gauss_legendre_is_exact_for_polynomials() {
         );
     }
     assert!((integrate_hemisphere(8, |w| w.z * w.z) - TAU / 3.0).abs() < 1e-12);
-    // One degree more than the rule can do is not exact: the check above has teeth.
-    let value = integrate(&gauss_legendre(3), -1.0, 1.0, |x| x.powi(6));
-    assert!((value - 2.0 / 7.0).abs() > 1e-2);
 }
 
 #[test]
@@ -397,13 +329,8 @@ fn values_are_counted_in_their_bins_and_densities_add_up() {
     for value in [1.0, 1.49, 2.6, 3.0, 0.99, 3.01, f64::NAN] {
         histogram.add(value);
     }
-    assert_eq!(histogram.counts(), [2, 0, 0, 2], "the upper end is the last bin's");
-    assert_eq!(histogram.total(), 7);
-    let density = histogram.density();
-    assert_eq!(
-        density.iter().map(|[middle, _]| *middle).collect::<Vec<_>>(),
-        [1.25, 1.75, 2.25, 2.75]
-    );
-    let within: f64 = density.iter().map(|[_, density]| density * 0.5).sum();
+    assert_eq!(histogram.counts, [2, 0, 0, 2], "the upper end is the last bin's");
+    assert_eq!(histogram.total, 7);
+    let within: f64 = histogram.density().iter().map(|[_, density]| density * 0.5).sum();
     assert!((within - 4.0 / 7.0).abs() < 1e-12, "{within}");
 }

@@ -46,9 +46,6 @@ impl Run {
     }
 }
 
-/// Pictures of a case whose pixels are not alike, each with random numbers of its own.
-const SEEDS: u32 = 16;
-
 /// Mean colour, with its standard error.
 fn mean(session: &mut Session, case: &Case, run: Run, more: u32) -> [[f64; 2]; 3] {
     let mut document = case.document.clone();
@@ -61,15 +58,7 @@ fn mean(session: &mut Session, case: &Case, run: Run, more: u32) -> [[f64; 2]; 3
     render.effects = EffectSwitches::all_on();
     case.keep(session.assets());
     session.reset();
-    if case.is_even {
-        return spread(&pixels(session, &document, &case.name));
-    }
-    document.render.samples = (document.render.samples / SEEDS).max(1);
-    let means = (0..SEEDS).map(|seed| {
-        document.render.seed = seed;
-        spread(&pixels(session, &document, &case.name)).map(|[mean, _]| mean)
-    });
-    spread(&means.collect::<Vec<_>>())
+    spread(&pixels(session, &document, &case.name))
 }
 
 /// The colours of a picture's pixels.
@@ -149,8 +138,7 @@ fn runs(case: &Case) -> Vec<Run> {
     let mut runs: Vec<_> = case.strategies.iter().map(|&strategy| Run::plain(strategy)).collect();
     let first = runs[0];
     runs[1..].iter_mut().for_each(|run| run.fewer = 4);
-    // Where most of a picture is empty, it is no measure of the rest.
-    if !case.is_dear() && case.is_even {
+    if !case.is_dear() {
         runs.push(Run {
             spread: 2,
             fewer: 4,

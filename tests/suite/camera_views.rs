@@ -45,8 +45,8 @@ fn of_sphere(film: &Film) -> f64 {
 /// It lights the sphere as before and is seen in a mirror, but the camera looks through it.
 #[test]
 fn a_light_hidden_from_the_camera_shines_and_is_not_seen() {
-    let white = ["base.color=1,1,1", "base.metalness=0", "specular.weight=0"];
-    let mirror = ["base.metalness=1", "specular.roughness=0"];
+    let white = ["base.color=1,1,1 base.metalness=0 specular.weight=0"];
+    let mirror = ["base.metalness=1 specular.roughness=0"];
     let place = [54, 31];
     for engine in ENGINES {
         let [seen, hidden] = [false, true].map(|is_hidden| {

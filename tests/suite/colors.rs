@@ -92,11 +92,6 @@ fn known_spaces_have_their_known_matrices() {
 }
 
 #[test]
-fn what_changes_nothing_is_left_out() {
-    assert_eq!(Grade::new(Grade::NEUTRAL_K, 1.0, 1.0), Grade::default());
-}
-
-#[test]
 fn the_light_that_is_to_be_white_becomes_white() {
     for kelvin in [2800.0, 4000.0, 9000.0] {
         let light = blackbody_color(f64::from(kelvin));

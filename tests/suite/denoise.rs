@@ -11,7 +11,7 @@ use glossmith::render::denoise::{Denoised, Denoiser, Noisy};
 use glossmith::scene::ModelSource;
 
 use super::cli_support::{Workplace, read_exr};
-use super::renders::render;
+use super::renders::{render, set};
 use super::support::Random;
 
 fn denoiser() -> Denoiser {
@@ -218,14 +218,10 @@ fn the_error_told_of_a_denoised_picture_is_the_true_one() {
 fn guides_follow_mirrors_and_are_alike_on_both_engines() {
     let mut document = studio(ModelSource::Sphere);
     document.ground = true;
-    for assignment in [
-        "specular.lobe=ggx",
-        "specular.roughness=0",
-        "specular.fresnel=none",
-        "base.metalness=1",
-    ] {
-        glossmith::document::assign(&mut document.materials[0], assignment).unwrap();
-    }
+    set(
+        &mut document.materials[0],
+        "specular.lobe=ggx specular.roughness=0 specular.fresnel=none base.metalness=1",
+    );
     document.lighting.ground_color = [0.1, 0.5, 0.9];
     document.render.samples = 16;
     document.view.denoise = Denoise::High;

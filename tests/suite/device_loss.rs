@@ -6,7 +6,7 @@ use glossmith::document::{Document, MaterialSettings};
 use glossmith::gpu::{AdapterKind, GpuAdapter, Moment, Traversal};
 use glossmith::job::film::Image;
 use glossmith::render::worker::{Event, Level, Pace, Worker};
-use glossmith::render::{EngineChoice, EngineKind, RayQueries, Session, SessionError};
+use glossmith::render::{EngineChoice, EngineKind, MachineOptions, RayQueries, Session, SessionError};
 
 use super::cli_support::passes_alone;
 use super::worker::{finished, small_document, wait};
@@ -60,7 +60,7 @@ fn renders_as_ever(worker: &Worker, kind: EngineKind) {
     let snapshot = worker.snapshot();
     let engine = snapshot.engine.as_ref().expect("it renders");
     assert_eq!(engine.kind, kind);
-    if RayQueries::chosen() == RayQueries::On {
+    if MachineOptions::get().ray_queries == RayQueries::On {
         let adapter = GpuAdapter::find(AdapterKind::Any).expect("there was one");
         let is_asked = kind == EngineKind::Gpu && adapter.has_ray_queries();
         assert_eq!(engine.traversal == Traversal::RayQueries, is_asked);
@@ -146,7 +146,7 @@ fn what_was_read_back_counts() {
 #[test]
 #[ignore = "the child of the test below: the choice holds for the whole process"]
 fn with_ray_queries() {
-    RayQueries::On.choose();
+    MachineOptions::set(RayQueries::On, Default::default());
     a_lost_device_is_opened_anew();
     what_was_read_back_counts();
 }

@@ -2,12 +2,11 @@
 
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, OnceLock};
-use std::time::Duration;
 
 use glossmith::document::Denoise;
 use glossmith::render::EngineChoice;
 use glossmith::render::shown::Shown;
-use glossmith::render::worker::{Pace, Picture, Snapshot, Worker};
+use glossmith::render::worker::{Activity, Pace, Picture, Snapshot, Worker};
 
 use super::worker::{small_document, wait};
 
@@ -67,11 +66,12 @@ fn every_display_at_every_step_is_of_one_film() {
     let (desk, wrong) = watched();
     let worker = desk.get().unwrap();
     let mut document = small_document();
-    // The smallest with a step of 1/8.
-    (document.render.width, document.render.height, document.render.samples) = (768, 768, 2);
+    // The smallest with a step of 1/4.
+    (document.render.width, document.render.height, document.render.samples) = (384, 384, 2);
     document.view.denoise = Denoise::Fast;
     let mut coarse = Vec::new();
-    for (turn, (shown, label, _)) in Shown::ALL.into_iter().enumerate() {
+    for (turn, &shown) in Shown::ALL.iter().enumerate() {
+        let label = shown.label();
         let has_map = !matches!(shown, Shown::Picture | Shown::Precision);
         worker.set_inspected(turn % 2 == 1);
         // A new engine has no known speed, so that it begins with the coarsest step.
@@ -82,12 +82,16 @@ fn every_display_at_every_step_is_of_one_film() {
             let picture = snapshot.picture.as_ref();
             picture.filter(|picture| picture.revision == revision).cloned()
         };
-        wait(worker, "a first image", |snapshot| {
+        let first = wait(worker, "a first image", |snapshot| {
             is_there(snapshot, revision).is_some()
         });
-        coarse.extend(is_there(&worker.snapshot(), revision).map(|picture| picture.reduction));
+        let first = is_there(&first, revision).unwrap();
+        coarse.push(first.reduction);
         worker.show(shown);
-        std::thread::sleep(Duration::from_millis(10));
+        wait(worker, "the next image", |snapshot| {
+            let next = is_there(snapshot, revision);
+            snapshot.activity == Activity::Done || next.is_some_and(|picture| picture.serial > first.serial)
+        });
         document.view.exposure_ev += 0.1;
         let revision = worker.submit(&document, Pace::Still);
         wait(worker, label, |snapshot| {

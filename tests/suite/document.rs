@@ -3,57 +3,17 @@
 use glossmith::compile::compile;
 use glossmith::document::custom_curve::CustomCurve;
 use glossmith::document::history::History;
-use glossmith::document::import::{geometric_from_ggx, ggx_from_geometric};
 use glossmith::document::turntable::{Turn, turned};
-use glossmith::document::{
-    AreaLight, Background, Change, Document, ImportLobe, MaterialSettings, PARAMETERS, PixelFilter, Strategy,
-};
+use glossmith::document::{AreaLight, Change, Document, MaterialSettings, PARAMETERS};
 use glossmith::optics::albedo::{ALBEDO_LENGTH, ROUGH_ALBEDO_LENGTH};
-use glossmith::optics::curve::{CUSTOM_LENGTH, Curve, curve_distance, custom_table};
+use glossmith::optics::curve::{CUSTOM_LENGTH, Curve, curve_distance};
 use glossmith::optics::lobe::Lobe;
-use glossmith::optics::random::Sequence;
-use glossmith::optics::tone::ToneCurve;
+use glossmith::scene::ModelSource;
 use glossmith::scene::environment::EnvironmentSource;
-use glossmith::scene::{ModelSource, Slot};
 
 use proptest::prelude::{Just, ProptestConfig, prop, prop_assert, prop_assert_eq, prop_oneof, proptest};
 
-use crate::parameters::{is_in_range, valid_values};
-
-#[test]
-fn slots_of_a_model_become_materials_in_range() {
-    let mut slot = Slot::neutral("lamp").with(&[("specular.ior", 9.0), ("specular.roughness", 0.4)]);
-    slot.set_color("emission.color", [10.0, 5.0, 0.0]);
-    let material = MaterialSettings::from_slot(&slot, ImportLobe::Ggx);
-    assert!(is_in_range(&material));
-    assert_eq!(
-        (material.emission_color, material.emission_strength),
-        ([1.0, 0.5, 0.0], 10.0)
-    );
-    assert_eq!(
-        (material.name.as_str(), material.roughness, material.lobe),
-        ("lamp", 0.4, Lobe::Ggx)
-    );
-    let material = MaterialSettings::from_slot(&slot, ImportLobe::Geometric);
-    assert!(is_in_range(&material) && material.lobe == Lobe::Geometric);
-    assert_eq!(material.roughness, geometric_from_ggx(0.4));
-}
-
-/// The table of the mathematics, section 5, the other way round: nearest lobes for α of GGX. Rough ones are hard to tell
-/// apart.
-#[test]
-fn roughness_is_matched_to_the_look_of_ggx() {
-    for (alpha, expected) in [(0.02, 0.1), (0.072, 0.3), (0.145, 0.5), (0.245, 0.7), (0.378, 0.9)] {
-        let found = geometric_from_ggx(f32::sqrt(alpha));
-        println!("{alpha} {found} {expected}");
-        assert!(
-            (found - expected).abs() < 0.055,
-            "alpha {alpha}: {found}, expected {expected}"
-        );
-        assert!((ggx_from_geometric(found) - f32::sqrt(alpha)).abs() < 1e-5);
-    }
-    assert_eq!((geometric_from_ggx(0.0), ggx_from_geometric(0.0)), (0.0, 0.0));
-}
+use crate::parameters::valid_values;
 
 proptest! {
     #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
@@ -94,28 +54,6 @@ proptest! {
             let drawn: f64 = curve_distance(Curve::Custom, &table, xi);
             prop_assert!((drawn - curve.distance(xi)).abs() < 1.5 * end / 64.0, "{}: {}", xi, drawn);
         }
-    }
-}
-
-#[test]
-fn a_curve_drawn_like_a_named_one_samples_like_it() {
-    let straight = CustomCurve::try_from(vec![[0.0, 0.0], [1.0, 1.0]])
-        .expect("valid")
-        .table();
-    // Uniform: density 1 at every node.
-    let exact = custom_table(1.0, &[1.0; 65]).expect("positive");
-    for (a, b) in straight.iter().zip(exact) {
-        assert!((a - b).abs() < 1e-6, "{a} {b}");
-    }
-    let points = (0..=32)
-        .map(|i| i as f32 / 32.0)
-        .map(|xi| [xi, xi.sqrt()])
-        .collect::<Vec<_>>();
-    let drawn = CustomCurve::try_from(points).expect("valid").table();
-    for i in 10..100 {
-        let xi = f64::from(i) / 100.0;
-        let (a, b): (f64, f64) = (curve_distance(Curve::Custom, &drawn, xi), xi.sqrt());
-        assert!((a - b).abs() < 2e-3, "{xi}: {a} {b}");
     }
 }
 
@@ -166,77 +104,41 @@ fn every_edit_is_the_change_that_it_is() {
         Change::between(&old, &new)
     };
     let none = Change::default();
-    assert_eq!(change(|_| {}), none);
-    assert_eq!(change(|d| d.materials[0].name = "x".into()), none);
-    assert_eq!(change(|d| d.view.exposure_ev = 1.0), Change { display: true, ..none });
-    assert_eq!(
-        change(|d| d.view.tone_map = ToneCurve::None),
-        Change { display: true, ..none }
-    );
-    assert_eq!(change(|d| d.camera.yaw_deg = 1.0), Change { camera: true, ..none });
-    assert_eq!(change(|d| d.render.width = 1), Change { size: true, ..none });
-    assert_eq!(
-        change(|d| d.lighting.environment = EnvironmentSource::Sky),
-        Change {
-            environment: true,
-            ..none
-        }
-    );
-    assert_eq!(
-        change(|d| d.lighting.rotation_deg = 1.0),
-        Change { lighting: true, ..none }
-    );
-    assert_eq!(change(|d| d.lighting.strength = 2.0), Change { lighting: true, ..none });
-    assert_eq!(
-        change(|d| d.lighting.background = Background::Transparent),
-        Change { lighting: true, ..none }
-    );
-    assert_eq!(
-        change(|d| d.lighting.area_lights.push(AreaLight::default())),
-        Change {
-            materials: true,
-            geometry: true,
-            ..none
-        }
-    );
-    assert_eq!(
-        change(|d| d.lighting.ground_color = [1.0; 3]),
+    let (materials, geometry) = (
         Change {
             materials: true,
             ..none
-        }
+        },
+        Change { geometry: true, ..none },
     );
-    assert_eq!(
-        change(|d| d.materials.push(MaterialSettings::default())),
-        Change {
-            materials: true,
-            ..none
-        }
-    );
-    assert_eq!(
-        change(|d| d.model = ModelSource::Sphere),
-        Change { geometry: true, ..none }
-    );
-    assert_eq!(change(|d| d.ground = true), Change { geometry: true, ..none });
-    assert_eq!(change(|d| d.render.samples = 1), Change { target: true, ..none });
-    assert_eq!(change(|d| d.render.time_s = Some(1.0)), Change { target: true, ..none });
-    assert_eq!(change(|d| d.render.noise = Some(0.1)), Change { target: true, ..none });
-    assert_eq!(change(|d| d.render.min_samples = 64), Change { target: true, ..none });
-    assert_eq!(
-        change(|d| d.render.adaptive = Some(true)),
-        Change { target: true, ..none }
-    );
-    // Said outright, though without a noise to reach it is so anyway.
-    assert_eq!(
-        change(|d| d.render.adaptive = Some(false)),
-        Change { target: true, ..none }
-    );
-    let sampling = Change { sampling: true, ..none };
-    assert_eq!(change(|d| d.render.bounces = 1), sampling);
-    assert_eq!(change(|d| d.render.seed = 1), sampling);
-    assert_eq!(change(|d| d.render.strategy = Strategy::Lobe), sampling);
-    assert_eq!(change(|d| d.render.filter = PixelFilter::Box), sampling);
-    assert_eq!(change(|d| d.render.sequence = Sequence::Independent), sampling);
+    // Settings: see parameters.rs.
+    type Edit = fn(&mut Document);
+    let edits: [(Edit, Change); 8] = [
+        (|_| {}, none),
+        (|d| d.materials[0].name = "x".into(), none),
+        (
+            |d| d.lighting.environment = EnvironmentSource::Sky,
+            Change {
+                environment: true,
+                ..none
+            },
+        ),
+        (
+            |d| d.lighting.area_lights.push(AreaLight::default()),
+            Change {
+                materials: true,
+                ..geometry
+            },
+        ),
+        (|d| d.lighting.ground_color = [1.0; 3], materials),
+        (|d| d.materials.push(MaterialSettings::default()), materials),
+        (|d| d.model = ModelSource::Sphere, geometry),
+        // Said outright, though without a noise to reach it is so anyway.
+        (|d| d.render.adaptive = Some(false), Change { target: true, ..none }),
+    ];
+    for (number, (edit, expected)) in edits.into_iter().enumerate() {
+        assert_eq!(change(edit), expected, "{number}");
+    }
     for parameter in PARAMETERS.iter() {
         let other = valid_values(parameter)
             .into_iter()
@@ -245,32 +147,8 @@ fn every_edit_is_the_change_that_it_is() {
         parameter
             .set(&mut new.materials[0], other.expect("two values"))
             .expect("valid");
-        assert_eq!(
-            Change::between(&old, &new),
-            Change {
-                materials: true,
-                ..none
-            },
-            "{}",
-            parameter.key
-        );
+        assert_eq!(Change::between(&old, &new), materials, "{}", parameter.key);
     }
-}
-
-#[test]
-fn changes_say_what_follows() {
-    let (none, all) = (Change::default(), Change::everything());
-    assert!(none.is_none() && !none.restarts());
-    assert!(all.restarts() && all.geometry && all.environment && all.materials);
-    let display = Change { display: true, ..none };
-    assert!(!display.restarts() && display.display);
-    let target = Change { target: true, ..none };
-    assert!(!target.restarts() && !target.is_none());
-    let geometry = Change { geometry: true, ..none };
-    assert!(geometry.restarts() && geometry.geometry);
-    assert!(!geometry.environment);
-    let camera = Change { camera: true, ..none };
-    assert!(camera.restarts() && !camera.geometry && !camera.materials);
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Environments: the density that they are sampled with, against quadrature and statistics.
+//! Environments: the density that they are sampled with, against the picture and statistics.
 
 use crate::environment::{assert_near, constant_map, random_map, sun_map, triple};
 use crate::support::Random;
@@ -7,7 +7,7 @@ use glossmith::import::environment::load;
 use glossmith::optics::vector::{Vec3, vec3};
 use glossmith::scene::environment::{
     Distribution, EnvironmentSource, SkyParams, environment_density, environment_direction, environment_radiance,
-    environment_sample, environment_uv, furnace, sky,
+    environment_sample, environment_uv, sky,
 };
 use glossmith::scene::inversion::{DRAW_BITS, drawn, find, place_in, shares};
 use std::f64::consts::{PI, TAU};
@@ -35,52 +35,6 @@ fn density_is_the_luminance_of_the_bilinear_picture() {
         // To the nearest of the 2²⁴ numbers that draw a cell of its row, and a row.
         assert_near(ratio / ratios[0], 1.0, 1e-4, "density over mean luminance of a cell");
     }
-}
-
-/// ∫ density over the sphere: midpoints in azimuth and in the cosine, which is uniform in solid angle.
-fn density_integral(distribution: &Distribution, columns: u32, rows: u32) -> f64 {
-    let mut sum = 0.0;
-    for row in 0..rows {
-        let y = 1.0 - 2.0 * (f64::from(row) + 0.5) / f64::from(rows);
-        for column in 0..columns {
-            let azimuth = TAU * (f64::from(column) + 0.5) / f64::from(columns);
-            let horizontal = (1.0 - y * y).sqrt();
-            sum += environment_density(
-                distribution,
-                vec3(horizontal * azimuth.sin(), y, -horizontal * azimuth.cos()),
-            );
-        }
-    }
-    sum * 4.0 * PI / (f64::from(columns) * f64::from(rows))
-}
-
-#[test]
-fn density_integrates_to_one() {
-    // The error is that of borders between cells that fall between midpoints: it goes with 1 / rows.
-    assert_near(
-        density_integral(random_map(37, 19).distribution(true), 37 * 4, 4_000),
-        1.0,
-        2e-3,
-        "random 37 × 19",
-    );
-    assert_near(
-        density_integral(sun_map().distribution(true), 256, 4_000),
-        1.0,
-        1e-2,
-        "sun",
-    );
-    assert_near(
-        density_integral(constant_map(1, 1, 3.0).distribution(true), 8, 8),
-        1.0,
-        1e-6,
-        "one texel",
-    );
-    assert_near(
-        density_integral(furnace().unwrap().distribution(true), 8, 8),
-        1.0,
-        1e-6,
-        "furnace",
-    );
 }
 
 /// The solid angle of a cell, told by the cosines of its borders.

@@ -1,12 +1,11 @@
 //! Materials to other programs' formats and back, through the command line.
 
+use glossmith::compile::compile;
 use glossmith::document::MaterialSettings;
 use glossmith::matching::lobe_of_material;
-use glossmith::optics::fresnel::{Fresnel, FresnelTerms, fresnel, weighted_ior};
+use glossmith::optics::fresnel::fresnel;
 use glossmith::optics::lobe::model::LobeModel;
-use glossmith::optics::thin_film::FilmTerms;
-use glossmith::optics::vector::{Vec3, vec3};
-use glossmith::scene::texture::{TextureSpace, TextureTarget};
+use glossmith::optics::vector::vec3;
 use glossmith::store::exchange::FORMATS;
 use glossmith::store::preset::{command_line_name, load_material, material_text};
 use glossmith::store::{PRESETS, save_material};
@@ -133,35 +132,14 @@ fn total_variation(a: &LobeModel, b: &LobeModel) -> f64 {
 
 /// The largest difference of the reflectances by the angle at the half vector; what a coat changes is a loss of its own.
 fn reflectance_apart(a: &MaterialSettings, b: &MaterialSettings) -> f64 {
-    let terms = |m: &MaterialSettings| FresnelTerms {
-        // Only the exact equations know total reflection.
-        model: match m.transmission_weight > 0.0 && m.metalness < 1.0 {
-            true => Fresnel::Dielectric,
-            false => m.fresnel,
-        },
-        metal_f0: Vec3::from_f32(m.base_color) * f64::from(m.base_weight),
-        metalness: f64::from(m.metalness),
-        tint: Vec3::from_f32(m.specular_color),
-        metal_tint: match m.specular_on_metal {
-            true => Vec3::from_f32(m.specular_color) * f64::from(m.specular_weight),
-            false => Vec3::splat(1.0),
-        },
-        edge_tint: Vec3::from_f32(m.edge_tint),
-        weight: match m.has_weight_in_index() {
-            true => 1.0,
-            false => f64::from(m.specular_weight),
-        },
-        ior: match m.has_weight_in_index() {
-            true => weighted_ior(f64::from(m.ior), m.specular_weight.into()),
-            false => f64::from(m.ior),
-        },
-        eta: Vec3::from_f32(m.eta),
-        k: Vec3::from_f32(m.k),
-        before: 1.0,
-        has_film: false,
-        film: FilmTerms::none_over(1.5),
-    };
-    let (a, b) = (terms(a), terms(b));
+    let [a, b] = [a, b].map(|material| {
+        let bare = MaterialSettings {
+            coat_weight: 0.0,
+            film_weight: 0.0,
+            ..material.clone()
+        };
+        compile(&[bare]).0[0].cast::<f64>().fresnel_terms(false)
+    });
     let apart = (0..=64).map(|i| {
         let cosine = f64::from(i) / 64.0;
         (fresnel(&a, cosine) - fresnel(&b, cosine))
@@ -243,48 +221,6 @@ fn a_file_that_was_edited_elsewhere_is_taken_as_it_is() {
         assert!(run.stderr.contains("changed since"), "{}", run.stderr);
         assert_eq!(load_material(&place.path("gold.json")).unwrap().value.metalness, 0.25);
     }
-}
-
-#[test]
-fn documents_of_materialx_are_read_and_graphs_are_named() {
-    let place = Workplace::new();
-    let picture = image::RgbImage::from_fn(4, 4, |x, _| image::Rgb([if x < 2 { 255 } else { 0 }, 255, 0]));
-    picture.save(place.path("checker.png")).unwrap();
-    let document = r#"<?xml version="1.0"?>
-<materialx version="1.39" colorspace="lin_rec709">
-  <nodegraph name="graph">
-    <input name="file" type="filename" value="checker.png" colorspace="srgb_texture" />
-    <image name="picture" type="color3"><input name="file" type="filename" interfacename="file" /></image>
-    <wobble name="noise" type="float" />
-    <output name="color" type="color3" nodename="picture" />
-    <output name="rough" type="float" nodename="noise" />
-  </nodegraph>
-  <standard_surface name="s" type="surfaceshader">
-    <input name="base_color" type="color3" nodegraph="graph" output="color" />
-    <input name="specular_roughness" type="float" nodegraph="graph" output="rough" />
-    <input name="specular_color" type="color3" value="0.5, 0.5, 0.5" colorspace="srgb_texture" />
-    <input name="sheen" type="float" value="0.3" />
-    <input name="metalness" type="float" value="0" />
-  </standard_surface>
-  <surfacematerial name="Fabric" type="material"><input name="surfaceshader" type="surfaceshader" nodename="s" /></surfacematerial>
-</materialx>"#;
-    place.write("fabric.mtlx", document.as_bytes());
-    let run = place.done("convert fabric.mtlx fabric.json --import-lobe ggx");
-    for words in ["wobble", "fuzz of about its albedo"] {
-        assert!(run.stderr.contains(words), "{words}: {}", run.stderr);
-    }
-    let material = load_material(&place.path("fabric.json")).unwrap().value;
-    assert_eq!(material.name, "Fabric");
-    let texture = material.user_textures.get(TextureTarget::BaseColor);
-    let texture = texture.expect("the image is a texture");
-    assert_eq!((material.base_color, texture.space), ([1.0; 3], TextureSpace::Srgb));
-    assert!(texture.file.ends_with("checker.png"), "{}", texture.file.display());
-    assert!(
-        (material.specular_color[0] - 0.214).abs() < 1e-3,
-        "{:?}",
-        material.specular_color
-    );
-    assert_eq!(material.roughness, 0.2, "the default stands in");
 }
 
 #[test]

@@ -2,7 +2,9 @@
 
 use std::path::Path;
 
+use glossmith::import::Budget;
 use glossmith::import::environment::{EnvironmentError, load};
+use glossmith::import::picture::read_texture;
 use glossmith::scene::environment::{Environment, EnvironmentSource};
 use tempfile::TempDir;
 
@@ -103,6 +105,19 @@ fn xyz_is_brought_to_rec_709() {
         "{:?}",
         colors.warnings
     );
+    let vivid = read(&[("B", 0.0), ("G", 0.5), ("R", 0.0)], Some(XYZ));
+    let is_told = |told: &String| told.contains("more saturated than linear Rec. 709");
+    assert!(vivid.warnings.iter().any(is_told), "{:?}", vivid.warnings);
+    // As a picture on a model, too.
+    let folder = TempDir::new().expect("a folder");
+    let texture = |chromaticities| {
+        let path = folder.path().join("a.exr");
+        write(&path, &[("B", 0.6), ("G", 0.5), ("R", 0.4)], chromaticities);
+        read_texture(&path, true, 16, &Budget::of_import())
+            .expect("loads")
+            .rgba8
+    };
+    assert!(texture(None) != texture(Some(XYZ)));
 }
 
 /// Primaries in a line span no space: the numbers stay as they are, which is told.

@@ -3,10 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use glossmith::document::{
-    AreaLight, Background, Bookmark, Document, MaterialSettings, PARAMETERS, PixelFilter, Strategy as LightStrategy,
-};
-use glossmith::optics::tone::ToneCurve;
+use glossmith::document::{AreaLight, Background, Bookmark, Document, MaterialSettings, PARAMETERS};
 use glossmith::scene::ModelSource;
 use glossmith::scene::environment::EnvironmentSource;
 use glossmith::store::FileError;
@@ -190,7 +187,7 @@ fn saving_follows_links_and_keeps_permissions() {
     assert_eq!(fs::metadata(&path).expect("there").permissions().mode() & 0o777, 0o640);
 }
 
-/// A document that differs from the default everywhere.
+/// A document with files, lights, a bookmark and numbers that are not round.
 fn unusual_document(folder: &Path) -> Document {
     let mut document = Document {
         model: ModelSource::File(folder.join("models/teapot")),
@@ -201,27 +198,13 @@ fn unusual_document(folder: &Path) -> Document {
     document.lighting.environment = EnvironmentSource::File(PathBuf::from("/elsewhere/sky.hdr"));
     document.lighting.rotation_deg = 12.3;
     document.lighting.background = Background::Color([0.1, 0.2, 0.3]);
-    document.lighting.area_lights = vec![
-        AreaLight::default(),
-        AreaLight {
-            yaw_deg: 12.5,
-            color: [0.1, 0.2, 0.3],
-            strength: 0.7,
-            ..AreaLight::default()
-        },
-    ];
+    document.lighting.area_lights = vec![AreaLight::default(), AreaLight::spot()];
     document.camera.target = Some([0.1, -2.0, 1e-3]);
     document.camera.distance = Some(3.3);
     document.bookmarks = vec![Bookmark {
         name: "Side".to_owned(),
         camera: document.camera,
     }];
-    document.view.tone_map = ToneCurve::PbrNeutral;
-    document.view.exposure_ev = -0.7;
-    document.render.strategy = LightStrategy::Light;
-    document.render.filter = PixelFilter::Box;
-    document.render.time_s = Some(2.5);
-    document.render.seed = u32::MAX;
     document
 }
 
@@ -293,45 +276,40 @@ fn documents_keep_what_is_unknown() {
 
 #[test]
 fn broken_documents_are_named_with_the_part_that_is_wrong() {
-    let cases = [
-        (json!({}), "not a Glossmith project"),
-        (json!({"glossmith": 1, "material": {}}), "not a Glossmith project"),
+    for (json, part) in [
+        ("{}", "not a Glossmith project"),
+        (r#"{"glossmith": 1, "material": {}}"#, "not a Glossmith project"),
         (
-            json!({"glossmith-document": 1, "render": {"width": 0}}),
+            r#"{"glossmith-document": 1, "render": {"width": 0}}"#,
             "render.width does not take 0",
         ),
+        (r#"{"glossmith-document": 1, "render": {"width": -4}}"#, "\"render\": "),
         (
-            json!({"glossmith-document": 1, "render": {"width": -4}}),
-            "\"render\": ",
-        ),
-        (
-            json!({"glossmith-document": 1, "render": {"bounces": 65}}),
+            r#"{"glossmith-document": 1, "render": {"bounces": 65}}"#,
             "from 1 to 64",
         ),
         (
-            json!({"glossmith-document": 1, "camera": {"fov_deg": "wide"}}),
+            r#"{"glossmith-document": 1, "camera": {"fov_deg": "wide"}}"#,
             "\"camera\": ",
         ),
         (
-            json!({"glossmith-document": 1, "camera": {"fov_deg": 180}}),
+            r#"{"glossmith-document": 1, "camera": {"fov_deg": 180}}"#,
             "camera.fov does not take 180",
         ),
         (
-            json!({"glossmith-document": 1, "view": {"tone_map": "sepia"}}),
+            r#"{"glossmith-document": 1, "view": {"tone_map": "sepia"}}"#,
             "pbr-neutral",
         ),
         (
-            json!({"glossmith-document": 1, "lighting": {"strength": -1}}),
+            r#"{"glossmith-document": 1, "lighting": {"strength": -1}}"#,
             "lighting.strength does not take -1",
         ),
         (
-            json!({"glossmith-document": 1, "materials": [{"material": {"specular.roughness": 2}}]}),
+            r#"{"glossmith-document": 1, "materials": [{"material": {"specular.roughness": 2}}]}"#,
             "specular.roughness does not take 2",
         ),
-    ];
-    for (json, part) in cases {
-        let bytes = json.to_string();
-        let error = project::parse_document("d/p.json".as_ref(), bytes.as_bytes())
+    ] {
+        let error = project::parse_document("d/p.json".as_ref(), json.as_bytes())
             .expect_err(part)
             .to_string();
         assert!(error.starts_with("d/p.json: ") && error.contains(part), "{error}");
@@ -369,16 +347,6 @@ fn any_json() -> impl Strategy<Value = Json> {
 
 proptest! {
     #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() })]
-
-    #[test]
-    fn arbitrary_bytes_are_an_error_or_in_range(bytes in prop::collection::vec(any::<u8>(), 0..200)) {
-        if let Ok(loaded) = preset::parse_material("m.json".as_ref(), &bytes) {
-            prop_assert!(is_in_range(&loaded.value));
-        }
-        if let Ok(loaded) = project::parse_document("p.json".as_ref(), &bytes) {
-            prop_assert!(loaded.value.check().is_ok());
-        }
-    }
 
     #[test]
     fn damaged_files_are_an_error_or_a_material_in_range(

@@ -22,15 +22,15 @@ fn small_spreads_of_large_values_are_kept_and_do_not_stall() {
     let mut film = Film::new(1, 1);
     let mut all = values(SAMPLES).enumerate().peekable();
     while all.peek().is_some() {
-        let mut halves = film.halves(0);
+        let mut halves = film.pixels[0];
         for (sample, y) in all.by_ref().take(5000) {
             halves[sample % 2].add([y; 3]);
         }
-        film.set_halves(0, &halves);
+        film.pixels[0] = halves;
     }
     let found = film.sums(0).spread();
     assert!((found / variance(SAMPLES) - 1.0).abs() < 1e-4, "{found}");
-    for half in film.halves(0) {
+    for half in film.pixels[0] {
         assert_eq!(half.samples, f64::from(SAMPLES / 2));
         assert!((half.spread() / variance(SAMPLES) - 1.0).abs() < 1e-4, "{half:?}");
     }
@@ -40,25 +40,6 @@ fn small_spreads_of_large_values_are_kept_and_do_not_stall() {
         .for_each(|(sample, y)| one_by_one.add(0, sample as u32, [y, y, y, 1.0]));
     let found = one_by_one.variance_of_mean_at(0) * 1000.0;
     assert!((found / variance(1000) - 1.0).abs() < 1e-4, "{found}");
-}
-
-/// However the samples are cut into passes, which the clock decides.
-#[test]
-fn sums_are_the_same_to_the_bit_in_passes_of_any_length() {
-    let film_in_passes = |length: usize| {
-        let mut film = Film::new(1, 1);
-        let all: Vec<_> = values(1000).collect();
-        for (pass, values) in all.chunks(length).enumerate() {
-            let mut halves = film.halves(0);
-            for (i, y) in values.iter().enumerate() {
-                halves[(pass * length + i) % 2].add([*y; 3]);
-            }
-            film.set_halves(0, &halves);
-        }
-        film
-    };
-    assert_eq!(film_in_passes(1), film_in_passes(1000));
-    assert_eq!(film_in_passes(7), film_in_passes(64));
 }
 
 #[test]
@@ -104,7 +85,7 @@ fn a_mix_weighs_each_group_in_both_halves() {
     }
     assert!(matches!(film.mixed(&[[1.0; 3], [1.0; 3]]), Cow::Borrowed(_)));
     let mixed = film.mixed(&[[2.0, 0.0, 1.0], [0.0, 1.0, 1.0]]);
-    let [even, odd] = mixed.halves(0);
+    let [even, odd] = mixed.pixels[0];
     assert_eq!([even.color, odd.color], [[6.0, 2.5, 5.5], [6.0, 5.0, 8.0]]);
     assert_eq!([even.samples, odd.samples], [2.0, 1.0]);
     assert_eq!(film.light_image(0).pixels, [[2.0, 2.0, 2.0, 1.0]]);

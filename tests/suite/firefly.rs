@@ -7,8 +7,6 @@ use glossmith::job::film::Film;
 use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::ModelSource;
 
-use super::renders::render;
-
 /// A shader ball in front of its light: much is reflected twice.
 fn scene(firefly_clamp: Option<f32>) -> Document {
     let mut document = Document {
@@ -72,21 +70,4 @@ fn what_is_taken_is_told() {
         taken.push(limited.clamped());
     }
     assert!((taken[0] / taken[1] - 1.0).abs() < 0.01, "{taken:?}");
-}
-
-/// Light that was reflected once or not at all is never limited: the sun itself, and what it lights.
-#[test]
-fn direct_light_is_left_alone() {
-    for engine in [EngineChoice::Cpu, EngineChoice::Gpu] {
-        let direct = |firefly_clamp| {
-            let mut document = scene(firefly_clamp);
-            document.render.bounces = 1;
-            render(engine, &document)
-        };
-        assert_eq!(direct(Some(1e-3)).clamped(), 0.0, "{engine:?}");
-        assert!(
-            (energy(&direct(Some(1e-3))) / energy(&direct(None)) - 1.0).abs() < 1e-6,
-            "{engine:?}"
-        );
-    }
 }

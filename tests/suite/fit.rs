@@ -9,8 +9,8 @@ use glossmith::optics::lobe::model::{LobeModel, view_direction};
 use glossmith::optics::lobe::{Lobe, phong};
 use glossmith::optics::vector::vec3;
 use glossmith::store::load_material;
-use std::path::Path;
-use std::process::{Command, Output};
+
+use crate::cli_support::Workplace;
 
 /// The roughness of `lobe` nearest to a target, at normal incidence unless said otherwise.
 fn nearest(target: &LobeModel, lobe: Lobe, view_angle_deg: f64, measure: Measure) -> Nearest {
@@ -117,35 +117,18 @@ fn merl_file(base: [f64; 3], highlight: [f64; 3], lobe: &LobeModel) -> Vec<u8> {
     bytes
 }
 
-fn glossmith(arguments: &[&str]) -> Output {
-    Command::new(crate::program()).args(arguments).output().unwrap()
-}
-
-fn text(path: &Path) -> &str {
-    path.to_str().unwrap()
-}
-
 #[test]
 fn measured_ggx_is_found_again() {
-    let folder = tempfile::tempdir().unwrap();
-    let (file, output) = (folder.path().join("red-plastic.binary"), folder.path().join("fit.json"));
+    let place = Workplace::new();
+    let file = place.path("red-plastic.binary");
     let ggx = LobeModel::new(Lobe::Ggx, 0.3, Curve::Smooth);
     std::fs::write(&file, merl_file([0.4, 0.1, 0.05], [0.04; 3], &ggx)).unwrap();
     let merl = Merl::load(&file).unwrap();
     let (wo, wi) = (view_direction(0.5), vec3(0.3, 0.2, 0.9).normalize());
     let expected = 0.4 / std::f64::consts::PI + 0.04 * ggx.evaluate(wo, wi)[0] / wi.z;
     assert!((merl.reflectance(wo, wi).x / expected - 1.0).abs() < 0.02);
-    let run = glossmith(&[
-        "fit",
-        "--target",
-        text(&file),
-        "--lobe",
-        "ggx",
-        "--output",
-        text(&output),
-    ]);
-    assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
-    let material = load_material(&output).unwrap().value;
+    place.done("fit --target red-plastic.binary --lobe ggx --output fit.json");
+    let material = load_material(&place.path("fit.json")).unwrap().value;
     assert_eq!((material.lobe, material.metalness), (Lobe::Ggx, 0.0));
     assert!((material.roughness / 0.3 - 1.0).abs() < 0.03, "{}", material.roughness);
     assert!((material.ior - 1.5).abs() < 0.03, "{}", material.ior);
@@ -181,20 +164,10 @@ fn measured_ggx_is_found_again() {
 
 #[test]
 fn command_line_fits_and_plots() {
-    let folder = tempfile::tempdir().unwrap();
-    let (output, plot) = (folder.path().join("fit.json"), folder.path().join("fit.csv"));
-    let alpha = [
-        "fit",
-        "--target",
-        "ggx:alpha=0.09",
-        "--output",
-        text(&output),
-        "--plot",
-        text(&plot),
-    ];
-    let run = glossmith(&alpha);
-    assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
-    let printed = String::from_utf8_lossy(&run.stdout).into_owned();
+    let place = Workplace::new();
+    let printed = place
+        .done("fit --target ggx:alpha=0.09 --output fit.json --plot fit.csv")
+        .stdout;
     for word in [
         "target   GGX 0.3",
         "before   TV",
@@ -205,9 +178,9 @@ fn command_line_fits_and_plots() {
     ] {
         assert!(printed.contains(word), "{word}: {printed}");
     }
-    let material = load_material(&output).unwrap().value;
+    let material = load_material(&place.path("fit.json")).unwrap().value;
     assert_eq!((material.lobe, material.curve), (Lobe::Geometric, Curve::Custom));
-    let rows = std::fs::read_to_string(&plot).unwrap();
+    let rows = place.read("fit.csv");
     assert!(rows.starts_with("lobe,view_angle_deg,angle_deg,density\n"), "{rows}");
     for wrong in [
         "ggx:2",
@@ -217,7 +190,6 @@ fn command_line_fits_and_plots() {
         "ggx:0.3/sqrt",
         "geometric:0.3/custom",
     ] {
-        let run = glossmith(&["fit", "--target", wrong, "--output", text(&output)]);
-        assert_eq!(run.status.code(), Some(2), "{wrong}");
+        place.refused(2, &format!("fit --target {wrong} --output fit.json"), &[]);
     }
 }

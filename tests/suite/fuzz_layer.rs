@@ -1,12 +1,13 @@
 //! The fuzz layer: its albedo by the published fits.
 
-use glossmith::document::{Document, MaterialSettings, assign};
+use glossmith::document::{Document, MaterialSettings};
 use glossmith::render::{EngineChoice, Precision};
 use glossmith::scene::texture::TextureTarget;
 use glossmith::study::evaluate::Evaluator;
 
 use crate::gltf_builder::Folder;
 use crate::own_textures::coated_on_a_box;
+use crate::renders::material;
 
 const ENGINES: [(EngineChoice, Precision); 2] = [
     (EngineChoice::Cpu, Precision::Single),
@@ -21,26 +22,18 @@ const ALBEDOS: [(f64, [f64; 4]); 3] = [
 ];
 
 /// Fuzz of weight 1 over a matt base.
-fn fuzzy(base: f64, roughness: f64, more: &[&str]) -> MaterialSettings {
-    let mut material = MaterialSettings::default();
-    let assignments = [
-        "base.metalness=0",
-        "specular.weight=0",
-        "fuzz.weight=1",
-        &format!("base.color={base},{base},{base}"),
-        &format!("fuzz.roughness={roughness}"),
-    ];
-    for assignment in assignments.iter().chain(more) {
-        assign(&mut material, assignment).unwrap();
-    }
-    material
+fn fuzzy(base: f64, roughness: f64, color: &str) -> MaterialSettings {
+    material(&format!(
+        "base.metalness=0 specular.weight=0 fuzz.weight=1 base.color={base},{base},{base} fuzz.roughness={roughness} \
+         fuzz.color={color}"
+    ))
 }
 
 /// A ball whose fuzz has the weight that a picture on a box gives it.
 pub fn fuzzy_on_a_box(folder: &Folder) -> Document {
     let mut document = coated_on_a_box(folder);
     let picture = document.materials[0].user_textures.get(TextureTarget::Coat).cloned();
-    document.materials[0] = fuzzy(0.1, 0.5, &[]);
+    document.materials[0] = fuzzy(0.1, 0.5, "1,1,1");
     document.materials[0].put_texture(TextureTarget::Fuzz, picture.unwrap());
     document
 }
@@ -49,7 +42,7 @@ pub fn fuzzy_on_a_box(folder: &Folder) -> Document {
 fn fuzz_over_black_has_the_albedo_of_the_fits() {
     for (engine, precision) in ENGINES {
         for (roughness, expected) in ALBEDOS {
-            let material = fuzzy(0.0, roughness, &["fuzz.color=1,0.5,0"]);
+            let material = fuzzy(0.0, roughness, "1,0.5,0");
             let evaluator = Evaluator::open(&material, engine, precision).unwrap();
             for (cosine, expected) in COSINES.iter().zip(expected) {
                 let [red, green, blue] = evaluator.albedo(*cosine, 1 << 12, 1).unwrap().reflected;

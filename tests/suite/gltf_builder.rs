@@ -70,6 +70,17 @@ impl Buffer {
         self.accessors.len() - 1
     }
 
+    /// The primitive of a mesh, with its normals and coordinates.
+    pub fn mesh(&mut self, mesh: &Mesh) -> Value {
+        let places: Vec<[f32; 3]> = mesh.positions.iter().map(|place| place.as_vec3().to_array()).collect();
+        let normals: Vec<[f32; 3]> = mesh.normals.iter().map(|normal| normal.to_array()).collect();
+        let uvs: Vec<[f32; 2]> = mesh.uvs.iter().map(|uv| uv.to_array()).collect();
+        let corners: Vec<u16> = mesh.triangles.iter().flatten().map(|&vertex| vertex as u16).collect();
+        let attributes = json!({
+            "POSITION": self.floats(&places), "NORMAL": self.floats(&normals), "TEXCOORD_0": self.floats(&uvs),
+        });
+        json!({"attributes": attributes, "indices": self.indices(&corners)})
+    }
     /// A document of these accessors with one node for the primitives.
     pub fn document(&self, primitives: Value) -> Value {
         json!({
@@ -110,36 +121,14 @@ impl Folder {
         fs::write(&path, bytes).expect("write a test file");
         load(&ModelSource::File(path))
     }
-    pub fn load_glb(&self, document: &Value, buffer: &Buffer) -> Result<Model, ModelError> {
-        self.load("model.glb", &glb(document, &buffer.bytes))
+    /// The source of a file of this name.
+    pub fn glb(&self, name: &str, document: &Value, buffer: &Buffer) -> ModelSource {
+        let path = self.path(name);
+        fs::write(&path, glb(document, &buffer.bytes)).expect("write a test file");
+        ModelSource::File(path)
     }
-}
-
-/// A strip of two squares, the texture of the right one mirrored about their common edge: what it lies in, and the primitive.
-pub fn mirrored_squares() -> (Buffer, Value) {
-    let mut buffer = Buffer::default();
-    let positions: Vec<[f32; 3]> = (0..6).map(|i| [(i % 3) as f32, (i / 3) as f32, 0.0]).collect();
-    let uvs: Vec<[f32; 2]> = (0..6).map(|i| [[0.0, 1.0, 0.0][i % 3], 1.0 - (i / 3) as f32]).collect();
-    let (positions, uvs) = (buffer.floats(&positions), buffer.floats(&uvs));
-    let normals = buffer.floats(&[[0.0, 0.0, 1.0]; 6]);
-    let indices = buffer.indices(&[0, 1, 4, 0, 4, 3, 1, 2, 5, 1, 5, 4]);
-    let attributes = json!({"POSITION": positions, "NORMAL": normals, "TEXCOORD_0": uvs});
-    (buffer, json!({"attributes": attributes, "indices": indices}))
-}
-
-/// Whether the tangents of those squares follow their textures, and the common edge is split for it.
-pub fn assert_mirrored_tangents(mesh: &Mesh) {
-    assert_eq!(
-        mesh.positions.len(),
-        8,
-        "the two vertices of the common edge are there twice"
-    );
-    for triangle in 0..4 {
-        let sign = if triangle < 2 { 1.0 } else { -1.0 };
-        for vertex in mesh.triangles[triangle] {
-            let tangent = mesh.tangents[vertex as usize];
-            assert_eq!(tangent.to_array(), [sign, 0.0, 0.0, sign], "triangle {triangle}");
-        }
+    pub fn load_glb(&self, document: &Value, buffer: &Buffer) -> Result<Model, ModelError> {
+        load(&self.glb("model.glb", document, buffer))
     }
 }
 
@@ -149,4 +138,25 @@ pub fn png() -> Vec<u8> {
     let picture = image::RgbaImage::from_fn(2, 1, |x, _| image::Rgba([10, 20, 30, if x == 0 { 255 } else { 128 }]));
     picture.write_to(&mut bytes, image::ImageFormat::Png).expect("encodes");
     bytes.into_inner()
+}
+
+/// A square with this material, and a picture within the file as texture 0.
+pub fn pictured(material: Value, png: &[u8]) -> (Buffer, Value) {
+    let (mut buffer, document) = square();
+    let view = buffer.view(png);
+    let mut file = buffer.document(document["meshes"][0]["primitives"].clone());
+    file["meshes"][0]["primitives"][0]["material"] = json!(0);
+    file["materials"] = json!([material]);
+    file["images"] = json!([{"bufferView": view, "mimeType": "image/png"}]);
+    file["textures"] = json!([{"source": 0}]);
+    (buffer, file)
+}
+
+/// Puts a value where a pointer says, making the objects on the way.
+pub fn put(document: &mut Value, place: &str, value: Value) {
+    let keys = place.trim_start_matches('/').split('/');
+    *keys.fold(document, |at, key| match key.parse::<usize>() {
+        Ok(index) if at.is_array() => &mut at[index],
+        _ => &mut at[key],
+    }) = value;
 }

@@ -1,6 +1,6 @@
 //! What is said about files that cannot be loaded; that no file makes the loader panic.
 
-use super::gltf_builder::{Folder, glb, square};
+use super::gltf_builder::{Folder, glb, pictured, put, square};
 use glossmith::import::{ModelError, load};
 use glossmith::scene::{Fate, Model, ModelSource};
 use serde_json::{Value, json};
@@ -67,36 +67,34 @@ fn files_that_are_no_models_are_refused_with_a_reason() {
 #[test]
 fn damaged_documents_are_refused_with_a_reason() {
     let folder = Folder::new();
-    let check = |change: &dyn Fn(&mut Value), words: &[&str]| {
+    for (place, value, words) in [
+        (
+            "/meshes/0/primitives/0/attributes/POSITION",
+            json!(77),
+            &["model.glb", "accessor 77", "does not exist"][..],
+        ),
+        (
+            "/accessors/0/count",
+            json!(4_000_000_000u64),
+            &["POSITION", "beyond its data"],
+        ),
+        ("/accessors/0/type", json!("VEC2"), &["POSITION", "3 components"]),
+        (
+            "/accessors/0/byteOffset",
+            json!(u64::MAX),
+            &["POSITION", "beyond its data"],
+        ),
+        ("/bufferViews/0/byteOffset", json!(u64::MAX), &["POSITION"]),
+        ("/bufferViews/0/byteLength", json!(u64::MAX), &["POSITION"]),
+        ("/accessors/3/componentType", json!(5126), &["indices"]),
+        ("/nodes", json!([{"mesh": 9}]), &["out of bounds"]),
+        ("/meshes/0/primitives/0/mode", json!(1), &["no triangles"]),
+        ("/scenes/0/nodes", json!([]), &["no triangles"]),
+    ] {
         let (buffer, mut document) = square();
-        change(&mut document);
+        put(&mut document, place, value);
         refused(folder.load_glb(&document, &buffer), words);
-    };
-    check(
-        &|d| d["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = json!(77),
-        &["model.glb", "accessor 77", "does not exist"],
-    );
-    check(
-        &|d| d["accessors"][0]["count"] = json!(4_000_000_000u64),
-        &["POSITION", "beyond its data"],
-    );
-    check(
-        &|d| d["accessors"][0]["type"] = json!("VEC2"),
-        &["POSITION", "3 components"],
-    );
-    check(
-        &|d| d["accessors"][0]["byteOffset"] = json!(u64::MAX),
-        &["POSITION", "beyond its data"],
-    );
-    check(&|d| d["bufferViews"][0]["byteOffset"] = json!(u64::MAX), &["POSITION"]);
-    check(&|d| d["bufferViews"][0]["byteLength"] = json!(u64::MAX), &["POSITION"]);
-    check(&|d| d["accessors"][3]["componentType"] = json!(5126), &["indices"]);
-    check(&|d| d["nodes"] = json!([{"mesh": 9}]), &["out of bounds"]);
-    check(
-        &|d| d["meshes"][0]["primitives"][0]["mode"] = json!(1),
-        &["no triangles"],
-    );
-    check(&|d| d["scenes"][0]["nodes"] = json!([]), &["no triangles"]);
+    }
     let (mut buffer, _) = square();
     let far = buffer.indices(&[0, 1, 4]);
     let document = buffer.document(json!([{"attributes": {"POSITION": 0}, "indices": far}]));
@@ -111,69 +109,77 @@ fn damaged_documents_are_refused_with_a_reason() {
 #[test]
 fn nothing_stops_for_a_detail() {
     let folder = Folder::new();
-    let shown = |change: &dyn Fn(&mut Value), triangles: usize, fate: Fate, words: &[&str]| {
-        let (buffer, mut document) = square();
-        change(&mut document);
+    let mut broken = pictured(json!({"emissiveTexture": {"index": 0}}), b"no picture");
+    put(&mut broken.1, "/images/0/name", json!("broken"));
+    let whole = json!({"attributes": {"POSITION": 0, "NORMAL": 1, "TEXCOORD_0": 2}, "indices": 3});
+    let circle = json!([{"mesh": 0, "children": [0], "name": "Loop"}]);
+    for ((buffer, mut document), place, value, fate, words) in [
+        (
+            square(),
+            "/extensionsRequired",
+            json!(["ACME_thing"]),
+            Fate::Ignored,
+            ["ACME_thing", "requires"],
+        ),
+        (
+            square(),
+            "/extensionsUsed",
+            json!(["ACME_other"]),
+            Fate::Ignored,
+            ["optional", "ACME_other"],
+        ),
+        (
+            square(),
+            "/accessors/1/count",
+            json!(3),
+            Fate::Ignored,
+            ["NORMAL", "3 values for 4"],
+        ),
+        (
+            square(),
+            "/buffers/0/byteLength",
+            json!(1_000_000),
+            Fate::Missing,
+            ["1000000", "buffer 0"],
+        ),
+        (square(), "/nodes", circle, Fate::Ignored, ["ancestor", "Loop"]),
+        (
+            square(),
+            "/scenes/0/nodes",
+            json!([0, 9]),
+            Fate::Missing,
+            ["node 9", ""],
+        ),
+        (
+            square(),
+            "/meshes/0/primitives/0/material",
+            json!(5),
+            Fate::Missing,
+            ["material 5", ""],
+        ),
+        (
+            broken,
+            "/asset/generator",
+            json!("a test"),
+            Fate::Missing,
+            ["grey", "broken"],
+        ),
+        (
+            square(),
+            "/meshes/0/primitives",
+            json!([whole, {"attributes": {}}]),
+            Fate::Ignored,
+            ["without triangles", "Part"],
+        ),
+    ] {
+        put(&mut document, place, value);
         let model = folder.load_glb(&document, &buffer).expect("loads");
-        assert_eq!(model.mesh.triangles.len(), triangles, "{words:?}");
-        let lines: Vec<String> = model.report.of(fate).map(|entry| entry.line()).collect();
-        let found = lines.iter().any(|line| words.iter().all(|word| line.contains(word)));
-        assert!(found, "no line of {lines:?} says {words:?}");
+        assert_eq!(model.mesh.triangles.len(), 2, "{words:?}");
+        let mut lines = model.report.of(fate).map(|entry| entry.line());
+        let found = lines.any(|line| words.iter().all(|word| line.contains(word)));
+        assert!(found, "{words:?}: {:?}", model.report);
         assert!(model.report.summary().is_some());
-    };
-    let shown_whole = |change: &dyn Fn(&mut Value), fate, words: &[&str]| shown(change, 2, fate, words);
-    shown_whole(
-        &|d| d["extensionsRequired"] = json!(["ACME_thing"]),
-        Fate::Ignored,
-        &["ACME_thing", "requires"],
-    );
-    shown_whole(
-        &|d| d["extensionsUsed"] = json!(["ACME_other"]),
-        Fate::Ignored,
-        &["optional", "ACME_other"],
-    );
-    shown(
-        &|d| d["accessors"][1]["count"] = json!(3),
-        2,
-        Fate::Ignored,
-        &["NORMAL", "3 values for 4", "Part"],
-    );
-    shown_whole(
-        &|d| d["buffers"][0]["byteLength"] = json!(1_000_000),
-        Fate::Missing,
-        &["1000000", "buffer 0"],
-    );
-    shown_whole(
-        &|d| d["nodes"] = json!([{"mesh": 0, "children": [0], "name": "Loop"}]),
-        Fate::Ignored,
-        &["ancestor", "Loop"],
-    );
-    shown_whole(&|d| d["scenes"][0]["nodes"] = json!([0, 9]), Fate::Missing, &["node 9"]);
-    shown_whole(
-        &|d| d["meshes"][0]["primitives"][0]["material"] = json!(5),
-        Fate::Missing,
-        &["material 5"],
-    );
-    shown_whole(
-        &|d| {
-            d["images"] = json!([{"bufferView": 0, "mimeType": "image/png", "name": "broken"}]);
-            d["textures"] = json!([{"source": 0}]);
-            d["materials"] = json!([{"emissiveTexture": {"index": 0}}]);
-            d["meshes"][0]["primitives"][0]["material"] = json!(0);
-        },
-        Fate::Missing,
-        &["texture", "grey", "broken"],
-    );
-    shown_whole(
-        &|d| {
-            d["meshes"][0]["primitives"]
-                .as_array_mut()
-                .unwrap()
-                .push(json!({"attributes": {}}))
-        },
-        Fate::Ignored,
-        &["without triangles", "Part"],
-    );
+    }
 }
 
 /// What no exporter writes is refused with its reason: nothing is guessed in its place.

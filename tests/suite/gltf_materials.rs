@@ -11,18 +11,12 @@ use glossmith::scene::texture::{TextureTarget, Textures, textured_material};
 use glossmith::scene::{Fate, Model};
 use serde_json::{Value, json};
 
-use super::gltf_builder::{Folder, assert_mirrored_tangents, mirrored_squares, png, square};
+use super::gltf_builder::{Folder, pictured, png};
 use super::gltf_extensions::{load_plain, says};
 
-/// The slot of a material on a square, with a picture of two texels as texture 0.
+/// What is read of a material on a square, with a picture of two texels as texture 0.
 fn slot_of(material: &Value) -> Model {
-    let (mut buffer, _) = square();
-    let picture = buffer.view(&png());
-    let primitive = json!({"attributes": {"POSITION": 0, "NORMAL": 1, "TEXCOORD_0": 2}, "indices": 3, "material": 0});
-    let mut document = buffer.document(json!([primitive]));
-    document["images"] = json!([{"bufferView": picture, "mimeType": "image/png"}]);
-    document["textures"] = json!([{"source": 0}]);
-    document["materials"] = json!([material]);
+    let (buffer, document) = pictured(material.clone(), &png());
     load_plain(&document, &buffer)
 }
 
@@ -43,20 +37,9 @@ fn material_extensions_reach_the_slots() {
     );
     let slot = &model.slots[0];
     assert_eq!(
-        (slot.number("specular.weight"), slot.color("specular.color")),
-        (0.5, [0.25, 2.0, 1.0])
+        ["coat.weight", "coat.roughness", "coat.normal_strength"].map(|key| slot.number(key)),
+        [0.5, 1.0, 0.5]
     );
-    assert_eq!(
-        (slot.number("specular.rotation"), slot.number("specular.ior")),
-        (0.5_f32.to_degrees(), 1.0)
-    );
-    has_widths(&materials_of(&model, ImportLobe::Ggx)[0], 0.5, 0.75);
-    assert!(
-        slot.number("coat.weight") == 0.5 && slot.texture(TextureTarget::Coat).is_some(),
-        "its texture is looked up"
-    );
-    assert!(slot.number("coat.roughness") == 1.0 && slot.texture(TextureTarget::CoatRoughness).is_some());
-    assert!(slot.number("coat.normal_strength") == 0.5 && slot.texture(TextureTarget::CoatNormal).is_some());
     says(&model, Fate::Approximated, "an index of refraction of 0.5, taken as 1");
     let material = &materials_of(&model, ImportLobe::Ggx)[0];
     assert_eq!(
@@ -71,6 +54,7 @@ fn material_extensions_reach_the_slots() {
             && uses[TextureTarget::CoatNormal]
             && !material.coat_on_base
     );
+    has_widths(material, 0.5, 0.75);
     assert_eq!(material.coat_darkening, 0.0);
     assert_eq!((material.rotation_deg, material.ior), (0.5_f32.to_degrees(), 1.0));
 }
@@ -143,33 +127,11 @@ fn an_index_beyond_4_is_a_metal_of_the_specular_colour() {
 #[test]
 fn a_webp_is_taken_before_its_fallback() {
     for (extension, name) in [("EXT_texture_webp", "extension's"), ("KHR_texture_basisu", "own")] {
-        let (mut buffer, _) = square();
-        let picture = buffer.view(&png());
-        let attributes = json!({"POSITION": 0, "TEXCOORD_0": 2});
-        let mut document = buffer.document(json!([{"attributes": attributes, "indices": 3, "material": 0}]));
-        document["images"] = json!(["own", "extension's"].map(|name| json!({"name": name, "bufferView": picture})));
+        let (buffer, mut document) = pictured(json!({"emissiveTexture": {"index": 0}}), &png());
+        document["images"] = json!(["own", "extension's"].map(|name| json!({"name": name, "bufferView": 4})));
         document["textures"] = json!([{"source": 0, "extensions": {extension: {"source": 1}}}]);
-        document["materials"] = json!([{"emissiveTexture": {"index": 0}}]);
         assert_eq!(load_plain(&document, &buffer).textures[0].name, name);
     }
-}
-
-#[test]
-fn unlit_materials_shine_and_reflect_nothing() {
-    let model = slot_of(&json!({
-        "pbrMetallicRoughness": {"baseColorFactor": [0.25, 0.5, 0.75, 1.0], "baseColorTexture": {"index": 0}},
-        "extensions": {"KHR_materials_unlit": {}},
-    }));
-    let slot = &model.slots[0];
-    assert_eq!(
-        (
-            slot.color("emission.color"),
-            slot.color("base.color"),
-            slot.number("specular.weight")
-        ),
-        ([0.25, 0.5, 0.75], [0.0; 3], 0.0)
-    );
-    assert!(slot.texture(TextureTarget::Emission).is_some());
 }
 
 #[test]
@@ -318,14 +280,35 @@ fn iridescence_is_a_thin_film() {
     assert!(read.value.extra.is_empty());
 }
 
+/// A strip of two squares, the texture of the right one mirrored about their common edge: tangents follow their textures,
+/// and the edge is split for it, with a normal texture and without.
 #[test]
 fn normal_textures_get_the_tangents_of_mikktspace() {
-    let (mut buffer, mut primitive) = mirrored_squares();
-    primitive["material"] = json!(0);
-    let picture = buffer.view(&png());
-    let mut document = buffer.document(json!([primitive]));
-    document["images"] = json!([{"bufferView": picture, "mimeType": "image/png"}]);
-    document["textures"] = json!([{"source": 0}]);
-    document["materials"] = json!([{"normalTexture": {"index": 0}}]);
-    assert_mirrored_tangents(&load_plain(&document, &buffer).mesh);
+    for material in [json!({"normalTexture": {"index": 0}}), json!({})] {
+        let (mut buffer, mut file) = pictured(material, &png());
+        let positions: Vec<[f32; 3]> = (0..6).map(|i| [(i % 3) as f32, (i / 3) as f32, 0.0]).collect();
+        let uvs: Vec<[f32; 2]> = (0..6).map(|i| [[0.0, 1.0, 0.0][i % 3], 1.0 - (i / 3) as f32]).collect();
+        let primitive = &mut file["meshes"][0]["primitives"][0];
+        primitive["attributes"] = json!({
+            "POSITION": buffer.floats(&positions), "TEXCOORD_0": buffer.floats(&uvs),
+            "NORMAL": buffer.floats(&[[0.0, 0.0, 1.0]; 6]),
+        });
+        primitive["indices"] = json!(buffer.indices(&[0, 1, 4, 0, 4, 3, 1, 2, 5, 1, 5, 4]));
+        file["bufferViews"] = json!(buffer.views);
+        file["accessors"] = json!(buffer.accessors);
+        file["buffers"][0]["byteLength"] = json!(buffer.bytes.len());
+        let mesh = load_plain(&file, &buffer).mesh;
+        assert_eq!(
+            mesh.positions.len(),
+            8,
+            "the two vertices of the common edge are there twice"
+        );
+        for triangle in 0..4 {
+            let sign = if triangle < 2 { 1.0 } else { -1.0 };
+            for vertex in mesh.triangles[triangle] {
+                let tangent = mesh.tangents[vertex as usize];
+                assert_eq!(tangent.to_array(), [sign, 0.0, 0.0, sign], "triangle {triangle}");
+            }
+        }
+    }
 }

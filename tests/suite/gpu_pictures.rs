@@ -2,7 +2,8 @@
 //! textures of 16 bits.
 
 use super::environment_shapes::{FACES, assert_is_that_cube};
-use super::gltf_builder::{Folder, glb, square};
+use super::gltf_builder::{Folder, pictured};
+use super::gltf_extensions::load_plain;
 use glossmith::import::environment::load;
 use glossmith::optics::material::NO_TEXTURE;
 use glossmith::optics::tone::{linear_from_srgb, srgb_from_linear};
@@ -14,7 +15,7 @@ use glossmith::scene::texture::{Textures, texture_lookup};
 use glossmith::scene::{Fate, Model, Texture};
 use half::f16;
 use image::{DynamicImage, ImageBuffer, Rgb};
-use serde_json::{Value, json};
+use serde_json::json;
 
 /// A KTX2 file of levels as they are.
 pub(super) fn ktx2(format: u32, [width, height, faces]: [u32; 3], levels: &[Vec<u8>]) -> Vec<u8> {
@@ -152,22 +153,13 @@ fn dds_cubes_and_panoramas_are_read() {
 
 /// A square with a picture in the slot of this name.
 fn textured(picture: &[u8], slot: &str) -> Model {
-    let folder = Folder::new();
-    let (mut buffer, _) = square();
-    let view = buffer.view(picture);
-    let primitive = json!({"attributes": {"POSITION": 0, "NORMAL": 1, "TEXCOORD_0": 2}, "indices": 3, "material": 0});
-    let mut document = buffer.document(json!([primitive]));
-    document["images"] = json!([{"bufferView": view, "mimeType": "image/png"}]);
-    document["textures"] = json!([{"source": 0}]);
-    let mut material: Value = json!({"pbrMetallicRoughness": {}});
-    match slot {
-        "normalTexture" => material[slot] = json!({"index": 0}),
-        of_surface => material["pbrMetallicRoughness"][of_surface] = json!({"index": 0}),
-    }
-    document["materials"] = json!([material]);
-    folder
-        .load("square.glb", &glb(&document, &buffer.bytes))
-        .expect("loads")
+    let texture = json!({"index": 0});
+    let material = match slot {
+        "normalTexture" => json!({slot: texture}),
+        of_surface => json!({"pbrMetallicRoughness": {of_surface: texture}}),
+    };
+    let (buffer, document) = pictured(material, picture);
+    load_plain(&document, &buffer)
 }
 
 fn png16(texels: [[u16; 3]; 2]) -> Vec<u8> {

@@ -1,15 +1,8 @@
 //! The catalogue of hard cases on both engines, its page of documentation, and that shipped scenes drop no sample.
 
-use std::collections::HashSet;
 use std::path::Path;
-use std::time::Duration;
 
-use glossmith::document::Document;
-use glossmith::document::effect::EffectSwitches;
-use glossmith::render::{EngineChoice, Session};
-use glossmith::scene::ModelSource;
-use glossmith::scene::environment::EnvironmentSource;
-use glossmith::store::PRESETS;
+use glossmith::render::EngineChoice;
 use glossmith::study::check::Check;
 use glossmith::study::hard::{HardOptions, Stage, catalogue, markdown, run};
 
@@ -49,15 +42,6 @@ fn numbers_are_those_of_f64_on_the_gpu() {
     assert_hold(EngineChoice::Gpu, true);
 }
 
-#[test]
-fn cases_are_told_apart() {
-    let names: HashSet<_> = catalogue().map(|case| case.name).collect();
-    assert_eq!(names.len(), catalogue().count());
-    for group in ["lobe", "fresnel", "geometry", "light", "sums"] {
-        assert!(catalogue().any(|case| case.group == group), "{group}");
-    }
-}
-
 /// What does not depend on the machine stands in docs/STABILITY.md to the letter; UPDATE_DOCS=1 runs all cases
 /// thoroughly and writes it anew.
 #[test]
@@ -94,43 +78,5 @@ fn the_table_of_stability_is_the_programs_own() {
             "{line}: the limit is {limit}"
         );
         assert!(!line.contains("**fails**"), "{line}");
-    }
-}
-
-/// Every shipped material, on the shipped models by turns, under the shipped lights by turns.
-#[test]
-#[cfg_attr(not(feature = "thorough"), ignore = "thorough")]
-fn shipped_scenes_drop_no_sample() {
-    let models = [
-        ModelSource::Teapot,
-        ModelSource::Shaderball,
-        ModelSource::Sphere,
-        ModelSource::Plane,
-    ];
-    let lights = [
-        EnvironmentSource::Sky,
-        EnvironmentSource::Studio,
-        EnvironmentSource::Furnace,
-    ];
-    for engine in [EngineChoice::Cpu, EngineChoice::Gpu] {
-        let mut session = Session::open(engine).unwrap();
-        for (i, material) in PRESETS.iter().enumerate() {
-            let mut document = Document {
-                model: models[i % models.len()].clone(),
-                ground: i % 2 == 0,
-                materials: vec![material.clone()],
-                ..Document::default()
-            };
-            document.lighting.environment = lights[i % lights.len()].clone();
-            (document.render.width, document.render.height) = (32, 32);
-            document.render.samples = if engine == EngineChoice::Cpu { 64 } else { 16 };
-            if engine == EngineChoice::Gpu {
-                // One kernel for all: compiling one for each takes longer than they do.
-                document.render.effects = EffectSwitches::all_on();
-            }
-            session.submit(&document).unwrap();
-            while !session.step(Duration::from_secs(1)).unwrap().is_done {}
-            assert_eq!(session.film().unwrap().dropped(), 0, "{engine:?} {}", material.name);
-        }
     }
 }

@@ -1,4 +1,4 @@
-//! Rays through the processor's hierarchy: each instruction set against exact arithmetic, against the GPU's hierarchy and
+//! Rays through the processor's hierarchy: each instruction set against exact arithmetic and
 //! against the others.
 
 use fearless_simd::Level;
@@ -12,10 +12,6 @@ use glossmith::scene::{
 use rayon::prelude::*;
 
 use super::support::{Random, sets};
-
-#[path = "../../benches/compressed/mod.rs"]
-mod compressed;
-use compressed::CompressedRays;
 
 fn model_of(mesh: Mesh) -> Model {
     Model {
@@ -211,24 +207,10 @@ fn bits(hit: Option<Hit>) -> Option<[u32; 4]> {
 }
 
 #[test]
-fn all_instruction_sets_give_the_same_bits_and_both_hierarchies_the_same_hits() {
+fn all_instruction_sets_give_the_same_bits() {
     let mut geometries = geometries();
     geometries.push(("fine teapot", Geometry::build(&model_of(teapot::mesh(25)), true)));
     for (name, geometry) in geometries {
-        let parts = geometry
-            .whole_parts()
-            .map(|(part, first)| (CompressedRays::new(part), part.compressed().places(), first as u32));
-        let nearest = |ray: &Ray| {
-            let mut nearest: Option<Hit> = None;
-            for (rays, places, first) in &parts {
-                let reach = nearest.map_or(ray.t_max, |hit| hit.t);
-                if let Some(hit) = rays.trace::<false>(ray.origin, ray.direction, reach) {
-                    let triangle = geometry.triangle_at(places[hit.triangle as usize] + first);
-                    nearest = Some(Hit { triangle, ..hit });
-                }
-            }
-            nearest
-        };
         let mut random = Random::new(5);
         let rays: Vec<Ray> = (0..100_000).map(|_| random_ray(&mut random, &geometry)).collect();
         let outcome = |ray: &Ray| {
@@ -249,36 +231,10 @@ fn all_instruction_sets_give_the_same_bits_and_both_hierarchies_the_same_hits() 
                 outcomes.all(|other| bits(other) == bits(hit)),
                 "{name}: other bits than {hit:?}"
             );
-            let expected = nearest(ray);
-            // Needles seen nearly edge-on have a t that rounding moves by some thousandths.
-            let is_near = match (hit, expected) {
-                (Some(hit), Some(expected)) => (hit.t - expected.t).abs() < 1e-2 * expected.t.max(1.0),
-                (None, None) => true,
-                _ => false,
-            };
-            assert!(is_near, "{name}: {hit:?} instead of {expected:?}");
-            let number = |hit: Option<Hit>| hit.map(|hit| hit.triangle);
-            (
-                hit.is_some(),
-                bits(hit) != bits(expected),
-                number(hit) != number(expected),
-            )
+            hit.is_some()
         };
-        let outcomes: Vec<(bool, bool, bool)> = rays.par_iter().map(outcome).collect();
-        let count = |which: fn(&(bool, bool, bool)) -> bool| outcomes.iter().filter(|outcome| which(outcome)).count();
-        let (met, other, another) = (count(|of| of.0), count(|of| of.1), count(|of| of.2));
-        println!(
-            "{name}: {met} of {} rays met something, {other} with other bits, {another} another triangle",
-            rays.len()
-        );
+        let met = rays.par_iter().filter(|ray| outcome(ray)).count();
         assert!(met > 10_000, "{name}: only {met} rays met something");
-        // Through a vertex or an edge, where several triangles are as near but for the rounding of t.
-        assert!(another < met / 2, "{name}: {another} of {met} met another triangle");
-        // Needles are edges all over, where a place that rounding puts before the box of a block is moved into it.
-        assert!(
-            name == "needles" || other < met / 2,
-            "{name}: {other} of {met} with other bits"
-        );
     }
 }
 

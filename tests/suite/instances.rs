@@ -9,7 +9,7 @@ use glossmith::scene::environment::EnvironmentSource;
 use glossmith::scene::{Geometry, Loading, Model, ModelSource, NO_OBJECT, teapot};
 use serde_json::{Value, json};
 
-use super::gltf_builder::{Buffer, Folder, glb};
+use super::gltf_builder::{Buffer, Folder};
 use super::renders::{assert_same_picture, document, render};
 
 /// Nodes: enough for their triangles to be kept as instances.
@@ -30,16 +30,9 @@ fn place(node: usize) -> DMat4 {
 
 /// The file of teapots of a material: all of one mesh, or of a mesh for each node.
 fn teapots(folder: &Folder, material: &Value, is_shared: bool) -> ModelSource {
-    let mesh = teapot::mesh(16);
     let mut buffer = Buffer::default();
-    let places: Vec<[f32; 3]> = mesh.positions.iter().map(|place| place.as_vec3().to_array()).collect();
-    let normals: Vec<[f32; 3]> = mesh.normals.iter().map(|normal| normal.to_array()).collect();
-    let uvs: Vec<[f32; 2]> = mesh.uvs.iter().map(|uv| uv.to_array()).collect();
-    let indices: Vec<u16> = mesh.triangles.iter().flatten().map(|&vertex| vertex as u16).collect();
-    let attributes = json!({
-        "POSITION": buffer.floats(&places), "NORMAL": buffer.floats(&normals), "TEXCOORD_0": buffer.floats(&uvs),
-    });
-    let primitive = json!({"attributes": attributes, "indices": buffer.indices(&indices), "material": 0});
+    let mut primitive = buffer.mesh(&teapot::mesh(16));
+    primitive["material"] = json!(0);
     let mut file = buffer.document(json!([primitive]));
     let one = file["meshes"][0].clone();
     if !is_shared {
@@ -52,9 +45,7 @@ fn teapots(folder: &Folder, material: &Value, is_shared: bool) -> ModelSource {
     file["nodes"] = (0..NODES).map(node).collect();
     file["scenes"] = json!([{"nodes": (0..NODES).collect::<Vec<_>>()}]);
     file["materials"] = json!([material]);
-    let path = folder.path(if is_shared { "shared.glb" } else { "apart.glb" });
-    std::fs::write(&path, glb(&file, &buffer.bytes)).unwrap();
-    ModelSource::File(path)
+    folder.glb(if is_shared { "shared.glb" } else { "apart.glb" }, &file, &buffer)
 }
 
 /// The same teapots as instances and one by one.

@@ -175,42 +175,50 @@ fn share(profile: &LightProfile, angles: [f64; 2]) -> f64 {
 
 #[test]
 fn between_the_angles_intensities_are_linear() {
-    let profile = LightProfile::new(vec![0.0, 30.0, 90.0], &[0.0], &[100.0, 40.0, 10.0]).expect("a profile");
-    for (vertical, expected) in [
+    let down = [
         (0.0, 100.0),
         (15.0, 70.0),
         (30.0, 40.0),
         (60.0, 25.0),
         (89.9, 10.05),
         (91.0, 0.0),
-    ] {
-        let found = share(&profile, [vertical, 77.0]);
-        assert!((found - expected).abs() < 0.01, "{vertical}: {found} for {expected}");
-    }
-    let quadrant = LightProfile::new(vec![0.0, 180.0], &[0.0, 90.0], &[8.0, 8.0, 2.0, 2.0]).expect("a profile");
-    for (horizontal, expected) in [
+    ];
+    let quarter = [
         (0.0, 8.0),
         (45.0, 5.0),
         (90.0, 2.0),
         (150.0, 6.0),
         (180.0, 8.0),
         (300.0, 4.0),
-    ] {
-        let found = share(&quadrant, [60.0, horizontal]);
-        assert!((found - expected).abs() < 0.01, "{horizontal}: {found} for {expected}");
-    }
-    let sides = LightProfile::new(vec![0.0, 180.0], &[90.0, 180.0, 270.0], &[1.0, 1.0, 3.0, 3.0, 5.0, 5.0]);
-    let sides = sides.expect("a profile");
-    for (horizontal, expected) in [
+    ];
+    let sides = [
         (90.0, 1.0),
         (135.0, 2.0),
         (0.0, 3.0),
         (45.0, 2.0),
         (270.0, 5.0),
         (315.0, 4.0),
+    ];
+    let around = |angles: [(f64, f64); 6]| angles.map(|(horizontal, expected)| ([60.0, horizontal], expected));
+    for (profile, rows) in [
+        (
+            LightProfile::new(vec![0.0, 30.0, 90.0], &[0.0], &[100.0, 40.0, 10.0]),
+            down.map(|(vertical, expected)| ([vertical, 77.0], expected)),
+        ),
+        (
+            LightProfile::new(vec![0.0, 180.0], &[0.0, 90.0], &[8.0, 8.0, 2.0, 2.0]),
+            around(quarter),
+        ),
+        (
+            LightProfile::new(vec![0.0, 180.0], &[90.0, 180.0, 270.0], &[1.0, 1.0, 3.0, 3.0, 5.0, 5.0]),
+            around(sides),
+        ),
     ] {
-        let found = share(&sides, [60.0, horizontal]);
-        assert!((found - expected).abs() < 0.01, "{horizontal}: {found} for {expected}");
+        let profile = profile.expect("a profile");
+        for (angles, expected) in rows {
+            let found = share(&profile, angles);
+            assert!((found - expected).abs() < 0.01, "{angles:?}: {found} for {expected}");
+        }
     }
 }
 

@@ -218,19 +218,15 @@ fn large_lights() -> Vec<AreaLight> {
 
 /// With an environment to share the samples with, with one that is not sampled, and with none.
 pub fn lit_scenes() -> Vec<(&'static str, Document)> {
-    let matt = ["base.metalness=0", "specular.roughness=0.6", "base.color=0.5,0.6,0.7"];
+    let matt = ["base.metalness=0 specular.roughness=0.6 base.color=0.5,0.6,0.7"];
     let mut studio = document(ModelSource::Teapot, EnvironmentSource::Studio, &matt);
     studio.lighting.area_lights = large_lights();
     studio.ground = true;
-    let metal = ["specular.lobe=ggx", "specular.roughness=0.8"];
+    let metal = ["specular.lobe=ggx specular.roughness=0.8"];
     let mut dark = document(ModelSource::Sphere, EnvironmentSource::Sky, &metal);
     dark.lighting.strength = 0.0;
     dark.lighting.area_lights = large_lights();
-    let glow = [
-        "emission.strength=2",
-        "emission.color=0.3,1,0.5",
-        "specular.roughness=0.5",
-    ];
+    let glow = ["emission.strength=2 emission.color=0.3,1,0.5 specular.roughness=0.5"];
     let mut furnace = document(ModelSource::Sphere, EnvironmentSource::Furnace, &glow);
     furnace.ground = true;
     // Far off on the ground a chance hit of the light would be rare.

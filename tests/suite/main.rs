@@ -119,7 +119,6 @@ mod refused;
 mod renders;
 mod rough_diffuse;
 mod same_bits;
-mod scattering;
 mod scenes;
 mod shadow_catcher;
 mod signals;

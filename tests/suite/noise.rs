@@ -5,12 +5,14 @@ use std::time::Duration;
 
 use glossmith::analysis::error::{Estimates, z_test};
 use glossmith::analysis::noise::noise;
-use glossmith::document::{AreaLight, Background, Document, assign};
+use glossmith::document::{AreaLight, Background, Document};
 use glossmith::job::film::Film;
 use glossmith::optics::random::Sequence;
 use glossmith::render::{EngineChoice, Session, StopReason};
 use glossmith::scene::ModelSource;
 use glossmith::scene::environment::EnvironmentSource;
+
+use crate::renders::set;
 
 const SIDE: u32 = 24;
 
@@ -20,9 +22,7 @@ fn document(model: ModelSource, environment: EnvironmentSource, assignments: &[&
         ..Document::default()
     };
     document.lighting.environment = environment;
-    for assignment in assignments {
-        assign(&mut document.materials[0], assignment).unwrap();
-    }
+    set(&mut document.materials[0], &assignments.join(" "));
     (document.render.width, document.render.height) = (SIDE, SIDE);
     document.render.bounces = 6;
     document
@@ -52,7 +52,7 @@ fn true_errors(films: &[Film]) -> Vec<f64> {
 
 /// Scenes of different difficulty: metal that mirrors a studio, matt under a sun, a small light on a ground.
 fn scenes() -> [Document; 3] {
-    let matt = ["base.metalness=0", "specular.weight=0"];
+    let matt = ["base.metalness=0 specular.weight=0"];
     let mut lit = document(
         ModelSource::Sphere,
         EnvironmentSource::Furnace,
@@ -142,7 +142,7 @@ fn a_render_stops_at_the_error_asked_for() {
     let of_gpu = [4.0 * SPREAD, 4.0 * SPREAD / f64::from(RENDERS).sqrt()];
     let of_processor = [0.15, 0.06];
     // Without strong contrasts: few samples do.
-    let matt = ["base.metalness=0", "specular.weight=0"];
+    let matt = ["base.metalness=0 specular.weight=0"];
     let mut document = document(ModelSource::Teapot, EnvironmentSource::Studio, &matt);
     document.lighting.background = Background::Color([0.3; 3]);
     (document.render.width, document.render.height) = (48, 48);

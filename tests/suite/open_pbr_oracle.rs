@@ -114,34 +114,18 @@ fn assert_values(kind: &str, tolerance: f64, reflects: bool) {
 }
 
 #[test]
-fn diffuse_bases_have_the_oracle_s_values() {
-    assert_values("diffuse", 3e-3, false);
-}
-
-#[test]
-fn gloss_has_the_oracle_s_values() {
-    assert_values("gloss", 3e-3, true);
-}
-
-/// By the same three wavelengths.
-#[test]
-fn films_over_gloss_have_the_oracle_s_values() {
-    assert_values("film", 3e-3, true);
-}
-
-#[test]
-fn peaks_of_metals_have_the_oracle_s_values() {
-    assert_values("peak", 3e-3, true);
-}
-
-#[test]
-fn peaks_of_refraction_have_the_oracle_s_values() {
-    assert_values("refracted", 5e-3, false);
-}
-
-#[test]
-fn coats_have_the_oracle_s_lobe() {
-    assert_values("coat", 3e-3, true);
+fn bases_gloss_films_peaks_and_coats_have_the_oracle_s_values() {
+    for (kind, tolerance, reflects) in [
+        ("diffuse", 3e-3, false),
+        ("gloss", 3e-3, true),
+        // By the same three wavelengths.
+        ("film", 3e-3, true),
+        ("peak", 3e-3, true),
+        ("refracted", 5e-3, false),
+        ("coat", 3e-3, true),
+    ] {
+        assert_values(kind, tolerance, reflects);
+    }
 }
 
 /// What a coat is held to where the oracle leaves the specification (its notes list nine such places).

@@ -4,12 +4,12 @@ use std::path::Path;
 use std::sync::Arc;
 
 use glossmith::compile::compile_textured;
-use glossmith::document::{Document, PixelFilter, texture_assignments};
+use glossmith::document::{Document, PixelFilter};
 use glossmith::optics::tone::linear_from_srgb;
 use glossmith::optics::vector::Vec3;
 use glossmith::scene::environment::EnvironmentSource;
 use glossmith::scene::texture::{
-    Pack, TextureAssignment, TextureChannel, TextureProjection, TextureSpace, TextureTarget, Textures, UserTexture,
+    Pack, TextureChannel, TextureProjection, TextureSpace, TextureTarget, Textures, UserTexture, UserTextures,
     mapped_normal, texture_lookup, uvs_at,
 };
 use glossmith::import::{Budget, picture::read_texture};
@@ -19,6 +19,7 @@ use image::{Rgba, RgbaImage};
 use serde_json::json;
 
 use crate::gltf_builder::Folder;
+use crate::gltf_extensions::load_plain;
 use crate::random_documents::of_material;
 use crate::textures::{four_texels, textured_square};
 
@@ -47,7 +48,7 @@ fn linear(code: u8) -> f64 {
 /// A square with texture coordinates and no textures.
 fn square() -> Model {
     let (buffer, document) = textured_square(&json!({"name": "Square"}), &[], &json!({}));
-    Folder::new().load_glb(&document, &buffer).unwrap()
+    load_plain(&document, &buffer)
 }
 
 /// A model's textures with one picture of the user's own on its first slot.
@@ -61,11 +62,8 @@ fn with(model: &Model, target: TextureTarget, texture: &UserTexture, picture: &R
             rgba16: Vec::new(),
         }))
     };
-    let assigned = [TextureAssignment {
-        slot: 0,
-        target,
-        texture: texture.clone(),
-    }];
+    let mut assigned = [UserTextures::default()];
+    assigned[0].set(target, Some(texture.clone()));
     Pack::new(model, &assigned, &read).textures(model, &assigned)
 }
 
@@ -350,8 +348,11 @@ fn files_keep_pictures_by_relative_paths() {
         std::fs::copy(folder.path(name), moved.path(name)).unwrap();
     }
     let there = load_document(&moved.path("project.json")).unwrap().value;
-    let assigned = texture_assignments(&there.materials);
-    assert!(assigned.iter().all(|one| one.texture.file.starts_with(moved.0.path())));
+    let mut own = there
+        .materials
+        .iter()
+        .flat_map(|material| material.user_textures.iter());
+    assert!(own.all(|(_, texture)| texture.file.starts_with(moved.0.path())));
     // A value out of range is refused by name.
     let broken = text.replace("\"scale\": 2.0", "\"scale\": -2.0");
     assert_ne!(broken, text);

@@ -88,24 +88,13 @@ pub(crate) fn is_in_range(material: &MaterialSettings) -> bool {
 }
 
 #[test]
-fn every_parameter_is_described_and_its_default_is_in_range() {
+fn keys_are_unique_and_defaults_in_range() {
     let mut keys: Vec<_> = PARAMETERS.iter().map(|parameter| parameter.key).collect();
-    for key in ["color", "metalness"] {
-        assert!(keys.contains(&format!("base.{key}").as_str()), "{key}");
-    }
-    for key in ["lobe", "roughness", "curve", "horizon", "fresnel", "ior", "color"] {
-        assert!(keys.contains(&format!("specular.{key}").as_str()), "{key}");
-    }
     keys.sort_unstable();
     let count = keys.len();
     keys.dedup();
     assert_eq!(keys.len(), count, "keys are unique");
     for parameter in PARAMETERS.iter() {
-        assert!(
-            !parameter.label.is_empty() && parameter.help.ends_with('.'),
-            "{}",
-            parameter.key
-        );
         assert_eq!(parameter.check(&parameter.default_value()), Ok(()), "{}", parameter.key);
         bar_lies_in_range(parameter);
     }
@@ -180,7 +169,6 @@ fn what_a_parameter_does_not_take_leaves_the_material_alone() {
 fn every_setting_is_set_by_its_key_checked_and_called_a_change_of_its_stage() {
     for setting in SETTINGS.iter() {
         let key = setting.key;
-        assert!(!setting.label.is_empty() && setting.help.ends_with('.'), "{key}");
         assert!(
             !PARAMETERS.iter().any(|parameter| parameter.key == key),
             "{key} is a material's, too"

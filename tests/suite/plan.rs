@@ -1,6 +1,5 @@
 //! The plan: its rules and switches.
 
-use std::collections::HashSet;
 use std::time::Duration;
 
 use glossmith::document::effect::{EFFECTS, EffectSwitches, Switch};
@@ -11,7 +10,6 @@ use glossmith::job::film::Film;
 use glossmith::optics::curve::Curve;
 use glossmith::render::{Assets, EngineChoice, Session};
 use glossmith::scene::ModelSource;
-use glossmith::store::PRESETS;
 
 use crate::cli_support::Workplace;
 use crate::plan_kernels::assert_same_but_for_rounding;
@@ -39,22 +37,6 @@ pub fn job(document: &Document) -> Job {
 pub fn job_in(session: &mut Session, document: &Document) -> Job {
     session.submit(document).unwrap();
     Job::clone(session.job().unwrap())
-}
-
-#[test]
-fn effects_have_words_and_names_of_their_own() {
-    let mut names = HashSet::new();
-    for effect in EFFECTS {
-        assert!(names.insert(effect.name()), "{} twice", effect.name());
-        assert!(
-            effect.help.ends_with('.') && !effect.label.is_empty(),
-            "{}",
-            effect.name()
-        );
-    }
-    for (effect, decision) in job(&Document::default()).plan.table() {
-        assert!(decision.reason.len() > 5, "{}: no reason", effect.name());
-    }
 }
 
 #[test]
@@ -128,22 +110,6 @@ fn the_horizon_is_left_out_where_every_view_is_steep_enough() {
         edit(&mut other);
         assert!(job(&other).plan.has(EffectId::Horizon), "{what}");
     }
-}
-
-#[test]
-fn switching_an_effect_off_takes_it_out_of_the_scene_on_both_engines() {
-    let glass = PRESETS.iter().find(|material| material.name == "Amber").unwrap();
-    let mut document = of_material(ModelSource::Sphere, glass.clone());
-    let plan = job(&document).plan;
-    assert!(plan.has(EffectId::Transmission) && plan.has(EffectId::Absorption));
-    document.render.effects.set(EffectId::Transmission, Switch::Off);
-    let plan = job(&document).plan;
-    assert!(!plan.has(EffectId::Transmission) && !plan.has(EffectId::Absorption));
-    let (_, decision) = plan
-        .table()
-        .find(|(effect, _)| *effect == EffectId::Transmission)
-        .unwrap();
-    assert!(decision.reason.contains("you"), "{}", decision.reason);
 }
 
 #[test]

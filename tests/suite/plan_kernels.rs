@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use glossmith::cpu::CpuEngine;
 use glossmith::document::effect::EFFECTS;
-use glossmith::document::{AreaLight, Document, GroundKind, assign};
+use glossmith::document::{AreaLight, Document, GroundKind};
 use glossmith::gpu::{AdapterKind, GpuDevice, GpuEngine};
 use glossmith::job::effect::{ANY, Decision};
 use glossmith::job::film::Film;
@@ -28,6 +28,7 @@ use crate::gltf_meaning::shining_by_vertices;
 use crate::own_textures::coated_on_a_box;
 use crate::plan::job_in;
 use crate::random_documents::{apart, of_material, random_document, small};
+use crate::renders::set;
 use crate::support::Random;
 use crate::terminator::coarse;
 use crate::textures::{all_at_once, coated_all_over};
@@ -243,54 +244,29 @@ fn what_kernels_leave_out_shows_nowhere() {
 /// Weak and coloured: documents in which every effect of the materials takes part in the picture, but hardly.
 fn weak_documents([folder, of_coat]: [&Folder; 2]) -> Vec<Document> {
     let mut metals = of_material(ModelSource::Shaderball, PRESETS[0].clone());
-    let metal = &mut metals.materials[0];
-    for assignment in [
-        "base.metalness=1",
-        "specular.fresnel=schlick",
-        "specular.roughness=0.3",
-        "specular.edge_tint=1,0.6,1",
-        "specular.anisotropy=0.1",
-        "coat.weight=0.04",
-        "coat.roughness=0.3",
-        "emission.color=0,0,0.02",
-        "emission.strength=1",
-        "geometry.opacity=0.96",
-    ] {
-        assign(metal, assignment).unwrap();
-    }
+    set(
+        &mut metals.materials[0],
+        "base.metalness=1 specular.fresnel=schlick specular.roughness=0.3 specular.edge_tint=1,0.6,1 \
+         specular.anisotropy=0.1 coat.weight=0.04 coat.roughness=0.3 emission.color=0,0,0.02 \
+         emission.strength=1 geometry.opacity=0.96",
+    );
     let mut rough = of_material(ModelSource::Shaderball, PRESETS[0].clone());
-    for assignment in [
-        "base.metalness=0.5",
-        "base.diffuse_roughness=0.5",
-        "fuzz.weight=0.2",
-        "thin_film.weight=0.3",
-        "thin_film.thickness=2",
-        "specular.lobe=ggx",
-        "specular.roughness=0.5",
-    ] {
-        assign(&mut rough.materials[0], assignment).unwrap();
-    }
+    set(
+        &mut rough.materials[0],
+        "base.metalness=0.5 base.diffuse_roughness=0.5 fuzz.weight=0.2 thin_film.weight=0.3 thin_film.thickness=2 \
+         specular.lobe=ggx specular.roughness=0.5",
+    );
     let mut glass = of_material(ModelSource::Shaderball, PRESETS[0].clone());
-    for assignment in [
-        "base.metalness=0.04",
-        "base.color=0,0,0.9",
-        "specular.roughness=0.2",
-        "transmission.weight=0.5",
-        "transmission.color=1,1,0.6",
-        "transmission.depth=0.5",
-    ] {
-        assign(&mut glass.materials[0], assignment).unwrap();
-    }
+    set(
+        &mut glass.materials[0],
+        "base.metalness=0.04 base.color=0,0,0.9 specular.roughness=0.2 transmission.weight=0.5 \
+         transmission.color=1,1,0.6 transmission.depth=0.5",
+    );
     let mut coated = of_material(ModelSource::Shaderball, PRESETS[0].clone());
-    for assignment in [
-        "coat.weight=0.5",
-        "coat.lobe=ggx",
-        "coat.roughness=0.5",
-        "coat.color=0.9,0.6,0.3",
-        "coat.on_base=on",
-    ] {
-        assign(&mut coated.materials[0], assignment).unwrap();
-    }
+    set(
+        &mut coated.materials[0],
+        "coat.weight=0.5 coat.lobe=ggx coat.roughness=0.5 coat.color=0.9,0.6,0.3 coat.on_base=on",
+    );
     glass.camera.aperture = 0.05;
     glass.lighting.area_lights.push(AreaLight::spot());
     glass.ground = true;
@@ -378,19 +354,5 @@ fn the_general_kernel_draws_what_the_plan_says() {
         let planned = on_cpu(as_its_kernel_reads(&job));
         let general = on_gpu(&mut engine, generally(&job));
         assert_same_but_for_rounding(&planned, &general, &format!("{document:?}"));
-    }
-}
-
-#[test]
-#[cfg_attr(not(feature = "thorough"), ignore = "thorough")]
-fn kernels_of_shipped_materials_draw_what_the_general_one_does() {
-    let mut engine = gpu();
-    let shipped = PRESETS
-        .iter()
-        .map(|material| of_material(ModelSource::Sphere, material.clone()));
-    for (document, job) in jobs(shipped) {
-        let specialised = on_gpu(&mut engine, job.clone());
-        let general = on_gpu(&mut engine, generally(&job));
-        assert_same_but_for_rounding(&specialised, &general, &document.materials[0].name);
     }
 }

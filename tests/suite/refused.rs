@@ -66,7 +66,7 @@ fn a_refused_command_is_told_once_and_the_device_goes_on() {
     let refused = gpu.wait().expect_err("there are no such bytes");
     assert!(matches!(refused, GpuError::Refused(_)), "{refused}");
     assert!(!refused.is_lost());
-    assert_eq!(gpu.read::<u8>(&buffer, 64).expect("told already"), [1; 64]);
+    assert_eq!(gpu.read::<u8>(&buffer, 0..64).expect("told already"), [1; 64]);
     gpu.device.destroy();
     for _ in 0..2 {
         assert!(gpu.wait().is_err_and(|error| error.is_lost()));

@@ -12,15 +12,25 @@ use glossmith::render::{Assets, EngineChoice, Session};
 use glossmith::scene::ModelSource;
 use glossmith::scene::environment::EnvironmentSource;
 
+/// Makes assignments that blanks part.
+pub fn set(material: &mut MaterialSettings, assignments: &str) {
+    for assignment in assignments.split_whitespace() {
+        assign(material, assignment).unwrap();
+    }
+}
+
+/// The default material but for these assignments.
+pub fn material(assignments: &str) -> MaterialSettings {
+    let mut material = MaterialSettings::default();
+    set(&mut material, assignments);
+    material
+}
+
 /// A small document: one material from assignments, box filter, independent samples (so that variances are honest).
 pub fn document(model: ModelSource, light: EnvironmentSource, assignments: &[&str]) -> Document {
-    let mut material = MaterialSettings::default();
-    for assignment in assignments {
-        assign(&mut material, assignment).unwrap();
-    }
     let mut document = Document {
         model,
-        materials: vec![material],
+        materials: vec![material(&assignments.join(" "))],
         ..Document::default()
     };
     document.lighting.environment = light;

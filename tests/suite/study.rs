@@ -237,13 +237,6 @@ fn accuracy_writes_the_race() {
             assert!(low <= value && value <= high, "{runner}");
         }
     }
-    // Nobody on the front is bettered by another one.
-    let place = |runner: &Value| [number(runner, "time_to_noise"), number(&runner["bias"], "low")];
-    for best in runners.iter().filter(|runner| runner["is_on_front"] == true) {
-        let betters =
-            |other: &Value| place(other)[0] < place(best)[0] && number(&other["bias"], "high") < place(best)[1];
-        assert!(!runners.iter().any(betters));
-    }
     let csv = workplace.read("found/accuracy.csv");
     assert_eq!(csv.lines().count(), 5);
     assert!(csv.starts_with("technique,label,seconds,"));

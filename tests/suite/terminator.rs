@@ -9,7 +9,7 @@ use glossmith::scene::mesh::Mesh;
 use glossmith::scene::{ModelSource, shapes};
 use serde_json::json;
 
-use super::gltf_builder::{Buffer, Folder, glb};
+use super::gltf_builder::{Buffer, Folder};
 use super::plan::job;
 use super::random_documents::of_material;
 use super::renders::{document, render};
@@ -17,20 +17,9 @@ use super::renders::{document, render};
 /// The file of a mesh with its normals.
 fn file(folder: &Folder, name: &str, mesh: &Mesh) -> ModelSource {
     let mut buffer = Buffer::default();
-    let positions: Vec<[f32; 3]> = mesh.positions.iter().map(|place| place.as_vec3().to_array()).collect();
-    let normals: Vec<[f32; 3]> = mesh.normals.iter().map(|normal| normal.to_array()).collect();
-    let attributes = json!({"POSITION": buffer.floats(&positions), "NORMAL": buffer.floats(&normals)});
-    let corners: Vec<u16> = mesh
-        .triangles
-        .as_flattened()
-        .iter()
-        .map(|vertex| *vertex as u16)
-        .collect();
-    let indices = buffer.indices(&corners);
-    let json = buffer.document(json!([{"attributes": attributes, "indices": indices}]));
-    let path = folder.path(name);
-    std::fs::write(&path, glb(&json, &buffer.bytes)).unwrap();
-    ModelSource::File(path)
+    let primitive = buffer.mesh(mesh);
+    let json = buffer.document(json!([primitive]));
+    folder.glb(name, &json, &buffer)
 }
 
 /// A coarse ball of matt 0.8 in a studio.

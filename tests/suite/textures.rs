@@ -1,7 +1,7 @@
 //! Textures against analytic look-ups, on both engines.
 
 use glossmith::compile::compile_textured;
-use glossmith::document::{Background, Document, ImportLobe, MaterialSettings, PixelFilter};
+use glossmith::document::{AreaLight, Background, Document, ImportLobe, MaterialSettings, PixelFilter};
 use glossmith::optics::random::Sequence;
 use glossmith::optics::tone::linear_from_srgb;
 use glossmith::optics::vector::Vec3;
@@ -14,6 +14,7 @@ use image::{Rgba, RgbaImage};
 use serde_json::{Value, json};
 
 use super::gltf_builder::{Buffer, Folder, glb, square};
+use super::gltf_extensions::load_plain;
 use super::renders::render;
 
 const ENGINES: [EngineChoice; 2] = [EngineChoice::Cpu, EngineChoice::Gpu];
@@ -49,7 +50,7 @@ pub fn textured_square(material: &Value, pictures: &[RgbaImage], sampler: &Value
 
 pub(super) fn load(material: &Value, pictures: &[RgbaImage], sampler: &Value) -> Model {
     let (buffer, document) = textured_square(material, pictures, sampler);
-    Folder::new().load_glb(&document, &buffer).expect("loads")
+    load_plain(&document, &buffer)
 }
 
 /// Two by two: black, a dark red; a green, white; the alpha of each its own.
@@ -260,6 +261,42 @@ fn a_texture_lies_upright_on_the_square() {
     }
 }
 
+/// What textures of two halves leave of weights: of a reflection by alpha, over black; of a thin sheet before a lamp by red.
+#[test]
+fn weights_follow_their_textures() {
+    let halves = RgbaImage::from_fn(2, 2, |x, _| Rgba([255 * x as u8, 0, 0, 255 * x as u8]));
+    let reflects =
+        json!({"KHR_materials_specular": {"specularTexture": {"index": 0}}, "KHR_materials_ior": {"ior": 3}});
+    let transmits = json!({"transmissionFactor": 1, "transmissionTexture": {"index": 0}});
+    let rows = [
+        (reflects, 0.0, 1.0, 0.25),
+        (json!({"KHR_materials_transmission": transmits}), 0.5, 0.0, 0.48),
+    ];
+    for (choice, (extensions, base, light, expected)) in ENGINES.iter().flat_map(|c| rows.iter().map(move |r| (*c, r)))
+    {
+        let material = json!({"extensions": extensions,
+            "pbrMetallicRoughness": {"baseColorFactor": [base, base, base, 1], "metallicFactor": 0, "roughnessFactor": 0}});
+        let (buffer, json) = textured_square(&material, std::slice::from_ref(&halves), &json!({"magFilter": NEAREST}));
+        let folder = Folder::new();
+        let mut document = head_on(&folder, &buffer, &json, EnvironmentSource::Furnace);
+        document.lighting.strength = *light;
+        document.lighting.area_lights = vec![AreaLight {
+            yaw_deg: 180.0,
+            pitch_deg: 0.0,
+            width: 9.0,
+            height: 9.0,
+            strength: 1.0 - light,
+            ..AreaLight::default()
+        }];
+        let pixels = render(choice, &document).image().pixels;
+        let [left, right] = [6, 26].map(|column| pixels[16 * 32 + column][0]);
+        assert!(
+            left < 1e-3 && (right - expected).abs() < 0.02,
+            "{choice:?} {extensions}: {left}, {right}"
+        );
+    }
+}
+
 /// The share that is there, and the cut where there is one: alpha 1, 0.5, 0.25 and 0 of the four quarters.
 #[test]
 fn alpha_is_a_share_or_a_cut() {
@@ -317,6 +354,15 @@ fn rough() -> RgbaImage {
     RgbaImage::from_fn(8, 8, |x, y| Rgba([0, (20 + 30 * x) as u8, (36 * y) as u8, 255]))
 }
 
+/// A square of this material, with pictures of bumps, of roughness and of colours, seen from aside.
+fn all_over(folder: &Folder, material: &Value) -> Document {
+    let (buffer, json) = textured_square(material, &[bumps(), rough(), four_texels()], &json!({}));
+    let mut document = head_on(folder, &buffer, &json, EnvironmentSource::Studio);
+    (document.camera.yaw_deg, document.camera.pitch_deg) = (30.0, 25.0);
+    (document.camera.distance, document.camera.fov_deg) = (Some(3.0), 40.0);
+    document
+}
+
 /// Everything at once: both engines and all strategies.
 pub(super) fn all_at_once(folder: &Folder) -> Document {
     let material = json!({
@@ -327,11 +373,8 @@ pub(super) fn all_at_once(folder: &Folder) -> Document {
             "baseColorFactor": [0.9, 0.8, 0.7, 1], "baseColorTexture": {"index": 2},
             "metallicRoughnessTexture": {"index": 1}},
     });
-    let (buffer, json) = textured_square(&material, &[bumps(), rough(), four_texels()], &json!({}));
-    let mut document = head_on(folder, &buffer, &json, EnvironmentSource::Studio);
+    let mut document = all_over(folder, &material);
     document.ground = true;
-    (document.camera.yaw_deg, document.camera.pitch_deg) = (30.0, 25.0);
-    (document.camera.distance, document.camera.fov_deg) = (Some(3.0), 40.0);
     document
 }
 
@@ -344,9 +387,5 @@ pub(super) fn coated_all_over(folder: &Folder) -> Document {
             "clearcoatRoughnessTexture": {"index": 1}, "clearcoatNormalTexture": {"index": 0, "scale": 0.7},
         }},
     });
-    let (buffer, json) = textured_square(&material, &[bumps(), rough(), four_texels()], &json!({}));
-    let mut document = head_on(folder, &buffer, &json, EnvironmentSource::Studio);
-    (document.camera.yaw_deg, document.camera.pitch_deg) = (30.0, 25.0);
-    (document.camera.distance, document.camera.fov_deg) = (Some(3.0), 40.0);
-    document
+    all_over(folder, &material)
 }

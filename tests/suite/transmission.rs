@@ -12,7 +12,7 @@ const ENGINES: [EngineChoice; 2] = [EngineChoice::Cpu, EngineChoice::Gpu];
 
 /// A sphere of clear glass, but for the assignments.
 fn glass(light: EnvironmentSource, assignments: &[&str]) -> Document {
-    let clear = ["base.metalness=0", "transmission.weight=1", "specular.roughness=0"];
+    let clear = ["base.metalness=0 transmission.weight=1 specular.roughness=0"];
     let mut document = document(ModelSource::Sphere, light, &[&clear, assignments].concat());
     document.lighting.background = Background::Transparent;
     document

@@ -21,11 +21,14 @@ use glossmith::store::{PRESETS, save_document, save_material};
 
 use super::manual::manual_pages;
 use super::ui_files::wait_for_words;
-use super::ui_hands::Hands as _;
+use super::ui_hands::{Hands as _, press};
 use super::worker::small_document;
 
 /// The window without a screen.
 pub(super) type Editor = Harness<'static, App>;
+
+/// Of a window whose size is not what is tested.
+const SIZE: Vec2 = Vec2::new(1280.0, 720.0);
 
 pub const PATIENCE: Duration = Duration::from_secs(600);
 
@@ -54,7 +57,7 @@ pub(super) fn editor_with(document: Document, files: Vec<PathBuf>) -> Editor {
 
 pub(super) fn editor_of(options: Options) -> Editor {
     let mut harness = Harness::builder()
-        .with_size(Vec2::new(1400.0, 1000.0))
+        .with_size(SIZE)
         .build_eframe(move |creation| App::new(creation, options).expect("a thread to render on"));
     // What most tests are about is in front.
     for pane in [Pane::Lighting, Pane::Curve] {
@@ -109,12 +112,10 @@ impl eframe::Storage for Memory {
 pub(super) fn editor_remembering(memory: Memory, options: Options) -> Editor {
     // The window borrows it for as long as it lives.
     let memory: &'static Memory = Box::leak(Box::new(memory));
-    let mut harness = Harness::builder()
-        .with_size(egui::Vec2::new(1400.0, 1000.0))
-        .build_eframe(move |creation| {
-            creation.storage = Some(memory);
-            App::new(creation, options).expect("a thread to render on")
-        });
+    let mut harness = Harness::builder().with_size(SIZE).build_eframe(move |creation| {
+        creation.storage = Some(memory);
+        App::new(creation, options).expect("a thread to render on")
+    });
     harness.run_steps(3);
     harness
 }
@@ -367,7 +368,7 @@ fn every_panel_and_sheet_has_named_inputs() {
 fn a_preset_is_one_click_and_one_undo() {
     let mut harness = editor();
     let before = harness.document().clone();
-    harness.click(Role::Button, "Rubber");
+    press(&mut harness, "Rubber");
     settle(&mut harness);
     let rubber = PRESETS
         .iter()

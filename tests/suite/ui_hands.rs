@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use egui::Rect;
 use egui::accesskit::Role;
+use egui::{Event, Modifiers, PointerButton, Rect};
 use egui_kittest::kittest::Queryable as _;
 use glossmith::app::actions::{Action, Command};
 use glossmith::app::layout::Pane;
@@ -17,8 +17,10 @@ pub(super) trait Hands {
     fn has(&self, label: &str) -> bool;
     /// Brings a panel to the front.
     fn reveal(&mut self, pane: Pane);
-    /// Clicks with the mouse, once the control rests: what a thread answered may move it in the next frame.
+    /// Clicks with the mouse.
     fn click(&mut self, role: Role, label: &str);
+    /// Clicks with the mouse where something is.
+    fn click_on(&mut self, place: impl Fn(&Editor) -> Rect);
     /// Clicks as a screen reader does, also what is covered or scrolled away.
     fn tap(&mut self, role: Role, label: &str);
     fn tap_label(&mut self, label: &str);
@@ -44,13 +46,22 @@ impl Hands for Editor {
     }
 
     fn click(&mut self, role: Role, label: &str) {
-        let place = |harness: &Self| harness.get_by_role_and_label(role, label).rect();
-        let mut before = Rect::NOTHING;
-        while before != place(self) {
-            before = place(self);
-            self.step();
+        self.click_on(|harness| harness.get_by_role_and_label(role, label).rect());
+    }
+
+    fn click_on(&mut self, place: impl Fn(&Editor) -> Rect) {
+        self.hover_at(place(self).center());
+        self.step();
+        // That frame may have moved it, as a thread's answer does. A button hits what the last frame has there.
+        let pos = place(self).center();
+        for pressed in [true, false] {
+            self.event(Event::PointerButton {
+                pos,
+                button: PointerButton::Primary,
+                pressed,
+                modifiers: Modifiers::NONE,
+            });
         }
-        self.get_by_role_and_label(role, label).click();
         self.run_steps(3);
     }
 
@@ -81,9 +92,9 @@ impl Hands for Editor {
     }
 }
 
-/// Presses a button.
+/// Presses a button, in sight or not.
 pub(super) fn press(harness: &mut Editor, label: &str) {
-    harness.click(Role::Button, label);
+    harness.tap(Role::Button, label);
 }
 
 /// Types a path where one is asked for, and presses the button behind it.

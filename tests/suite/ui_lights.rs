@@ -45,10 +45,6 @@ fn place(harness: &Editor, label: &str) -> Pos2 {
     harness.get_by_label(label).rect().center()
 }
 
-fn press(harness: &mut Editor, label: &str) {
-    harness.tap_label(label);
-}
-
 fn with_modifiers(harness: &mut Editor, modifiers: Modifiers, deed: impl FnOnce(&mut Editor)) {
     harness.event(Event::ModifiersChanged(modifiers));
     deed(harness);
@@ -103,7 +99,7 @@ fn each_handle_changes_its_number_in_one_step() {
     };
     let mut harness = editor_lit_by(&[spot]);
     assert!(!harness.has("Turn handle of area light 1"), "no light is chosen");
-    press(&mut harness, "Choose area light 1");
+    harness.tap_label("Choose area light 1");
     let before = document(&harness).clone();
     let middle = place(&harness, "Move area light 1");
     /// What of a light a handle changes.
@@ -128,7 +124,7 @@ fn each_handle_changes_its_number_in_one_step() {
         undo(&mut harness);
         assert_eq!(*document(&harness), before, "{handle}");
     }
-    press(&mut harness, "Choose area light 1");
+    harness.tap_label("Choose area light 1");
     assert!(!harness.has("Turn handle of area light 1"));
 }
 

@@ -90,19 +90,16 @@ fn maps_are_chosen_over_the_picture_and_leave_it_as_it_is() {
     let mut harness = editor();
     let (linear, plain) = (picture(&harness), shown(&harness).rgba.clone());
     let mut seen = vec![plain.clone()];
-    for (map, label, _) in Shown::ALL
-        .into_iter()
-        .skip(1)
-        .filter(|(map, ..)| *map != Shown::Precision)
-    {
+    for &map in Shown::ALL[1..].iter().filter(|map| **map != Shown::Precision) {
+        let label = map.label();
         harness.click(Role::ComboBox, "Viewport shows");
         // Panels may have tabs of the same name, but not over the viewport.
         let over = harness.get_by_label("Viewport").rect().x_range();
-        harness
-            .query_all_by_role_and_label(Role::Button, label)
-            .find(|choice| over.contains(choice.rect().center().x))
-            .expect("it is in the menu")
-            .click();
+        harness.click_on(|harness| {
+            let mut choices = harness.query_all_by_role_and_label(Role::Button, label);
+            let choice = choices.find(|choice| over.contains(choice.rect().center().x));
+            choice.expect("it is in the menu").rect()
+        });
         wait(&mut harness, label, |app| {
             let picture = app.snapshot().picture.clone();
             picture.is_some_and(|picture| picture.map.is_some_and(|(of, _)| of == map))
@@ -169,8 +166,7 @@ fn the_pictures_own_pixels_are_magnified_without_moving_the_camera() {
     button(&mut harness, to, false);
     assert!(says(&harness, "30, 16 of 40 × 24"), "it was not moved");
     assert_eq!(*harness.document(), before, "the camera stays");
-    harness.get_by_label(whole).click();
-    harness.run_steps(3);
+    harness.click_on(|harness| harness.get_by_label(whole).rect());
     assert!(!harness.has(whole));
     for (key, is_magnified) in [
         (Key::Plus, true),

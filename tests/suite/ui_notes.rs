@@ -110,7 +110,7 @@ fn a_screenshot_is_reported() {
         &mut harness,
         Command::SaveWindow,
         &folder.path().join("window.png"),
-        "Saved window.png: 1400 × 1000 pixels",
+        "Saved window.png: 1280 × 720 pixels",
     );
 }
 
@@ -142,8 +142,7 @@ fn a_save_of_an_unfinished_image_offers_to_render_it() {
     }
     harness.command(Command::CopyPicture);
     see(&mut harness, "the copy", |harness| has(harness, RENDER));
-    harness.get_by_label_contains(RENDER).click();
-    harness.run_steps(3);
+    harness.click_on(|harness| harness.get_by_label_contains(RENDER).rect());
     type_path(&mut harness, &folder.path().join("whole.png"), "Save");
     see(&mut harness, "the queue", |harness| has(harness, "whole.png"));
 }

@@ -12,7 +12,7 @@ use glossmith::store::{PRESETS, load_document, save_document};
 
 use super::gltf_builder::Folder;
 use super::ui::{Editor, editor_with, picture, request, settle, undo};
-use super::ui_hands::Hands as _;
+use super::ui_hands::{Hands as _, press};
 use super::worker::small_document;
 
 /// Two squares side by side, facing the camera, each an object with a material of its own.
@@ -63,10 +63,6 @@ fn opened(document: Document) -> Editor {
 
 fn button(harness: &Editor, label: &str) -> bool {
     harness.query_by_role_and_label(Role::Button, label).is_some()
-}
-
-fn press(harness: &mut Editor, label: &str) {
-    harness.tap(Role::Button, label);
 }
 
 /// Opens the menu of a line and presses an entry of it.

@@ -2,7 +2,6 @@
 
 use std::path::PathBuf;
 
-use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable as _;
 use glossmith::app::actions::Action;
 use glossmith::document::Document;
@@ -13,14 +12,10 @@ use serde_json::Value as Json;
 use super::gltf_builder::Folder;
 use super::ui::{Editor, editor, request, see_label, wait};
 use super::ui_files::says;
-use super::ui_hands::Hands as _;
+use super::ui_hands::{Hands as _, press};
 
 const QUESTION: &str = "Read files from elsewhere?";
 const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
-
-fn press(harness: &mut Editor, label: &str) {
-    harness.tap(Role::Button, label);
-}
 
 fn asks(harness: &mut Editor) -> bool {
     harness.run_steps(3);

@@ -49,7 +49,6 @@ fn the_engine_chosen_in_the_menu_is_remembered() {
 fn a_check_can_be_stopped_and_leaves_the_viewport_its_time() {
     let mut harness = editor();
     harness.reveal(Pane::Check);
-    harness.tap(Role::CheckBox, "Thorough");
     harness.get_by_label("Check this machine").click_accesskit();
     see_label(&mut harness, "Checking samples against densities …");
     harness.command(Command::Restart);
@@ -92,10 +91,7 @@ fn examples_are_opened_from_the_help_menu() {
     let before = harness.document().clone();
     for example in &EXAMPLES {
         harness.click(Role::Button, "Help");
-        harness.get_by_label_contains("Examples").hover();
-        harness.run_steps(3);
-        harness.get_by_label_contains("Examples").click();
-        harness.run_steps(3);
+        harness.click_on(|harness| harness.get_by_label_contains("Examples").rect());
         harness.click(Role::Button, example.label);
         let document = (example.document)();
         assert_eq!(harness.document().materials, document.materials, "{}", example.label);

@@ -1,10 +1,10 @@
-//! The two workspaces, the calm status bar, the first minute, and what the palette finds.
+//! The two workspaces and the user's own, the calm status bar, the first minute, and what the palette finds.
 
 use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable as _;
 use glossmith::app::actions::{Action, Command};
 use glossmith::app::layout::Pane;
-use glossmith::app::workspaces::{LOOK, MEASURE};
+use glossmith::app::workspaces::{Change, LOOK, MEASURE};
 use glossmith::app::{Options, Resolution};
 use glossmith::render::EngineChoice;
 use glossmith::scene::ModelSource;
@@ -50,6 +50,10 @@ fn the_window_begins_with_looks_and_measures_where_that_is_asked_for() {
         assert!(!has(&harness, told), "{told:?} at the start");
     }
     assert!(harness.has("Specular roughness"), "the material");
+    assert!(
+        !harness.has("Specular below horizon"),
+        "what the paper needs is in Measure"
+    );
     use_workspace(&mut harness, MEASURE);
     assert!(has(&harness, "samples/s"), "the status bar tells numbers");
     for pane in [Pane::Convergence, Pane::Race, Pane::Inspector] {
@@ -58,6 +62,32 @@ fn the_window_begins_with_looks_and_measures_where_that_is_asked_for() {
     use_workspace(&mut harness, LOOK);
     assert!(!has(&harness, "samples/s"));
     assert_eq!(*harness.document(), before, "workspaces are no edit");
+}
+
+/// A workspace of the user's is saved under a name from the menu, shown again, and removed.
+#[test]
+fn a_workspace_of_ones_own_is_saved_and_removed() {
+    let mut harness = at_first();
+    harness.reveal(Pane::Log);
+    harness.tap_label("Workspaces");
+    harness.get_by_role_and_label(Role::TextInput, "Workspace name").focus();
+    harness.run_steps(2);
+    harness
+        .get_by_role_and_label(Role::TextInput, "Workspace name")
+        .type_text("Shots");
+    harness.run_steps(2);
+    harness.tap_label("Save workspace");
+    assert!(harness.has("Workspace Shots"), "it is shown");
+    use_workspace(&mut harness, LOOK);
+    assert!(harness.query_all_by_label(Pane::Log.title()).next().is_none());
+    request(&mut harness, Action::ChangeWorkspaces(Change::Use("Shots".to_owned())));
+    assert!(harness.query_all_by_label(Pane::Log.title()).next().is_some());
+    request(
+        &mut harness,
+        Action::ChangeWorkspaces(Change::Remove("Shots".to_owned())),
+    );
+    assert!(!harness.has("Workspace Shots"));
+    assert!(harness.has("Workspace Look"));
 }
 
 /// The start and *New* show the still life; it is a project like any other, and its parts are objects.

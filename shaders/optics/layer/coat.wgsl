@@ -46,10 +46,6 @@ fn coat_refined_sample(material: Material, surface: Surface, drawn: LobeSample) 
     return LobeSample(drawn.wi, coat_fresnel(material, surface.wo, drawn.wi) * drawn.weight);
 }
 
-fn coat_refined(material: Material, surface: Surface, wi: vec3f, evaluated: vec2f) -> vec2f {
-    return vec2f(evaluated.x * coat_fresnel(material, surface.wo, wi), evaluated.y);
-}
-
 fn coat_fresnel(material: Material, wo: vec3f, wi: vec3f) -> f32 {
     return material.coat_weight * fresnel_dielectric(half_vector_cosine(wo, wi), material.coat_ior);
 }

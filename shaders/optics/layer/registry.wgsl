@@ -70,7 +70,9 @@ fn layer_refined_sample(layer: u32, material: Material, surface: Surface, xi: ve
 fn layer_refined(layer: u32, material: Material, surface: Surface, lobe: LayerLobe, wi: vec3f) -> vec2f {
     let evaluated = lobe_evaluate(lobe.shape, lobe.frame, surface.normal, surface.wo, wi);
     if PLAN_FUZZ && layer == LAYER_FUZZ { return fuzz_refined(material, surface, wi); }
-    if PLAN_COAT && layer == LAYER_COAT { return coat_refined(material, surface, wi, evaluated); }
+    if PLAN_COAT && layer == LAYER_COAT {
+        return vec2f(evaluated.x * coat_fresnel(material, surface.wo, wi), evaluated.y);
+    }
     if PLAN_BASE && layer == LAYER_BASE { return base_refined(material, surface, wi, evaluated); }
     return evaluated;
 }

@@ -62,7 +62,7 @@ fn specular_albedos(material: Material, surface: Surface) -> mat2x3f {
     let terms = material_fresnel_terms(material, surface.is_inside);
     let row = table_row(material, surface);
     var integrals = rough_albedo_lookup(first, place, row);
-    if !holds_integrals(material) {
+    if !PLAN_ROUGH_TABLES || (material.has_rough_tables & HOLDS_INTEGRALS) == 0u {
         let mean = integrals.xyz;
         return mat2x3f(mean * select(WHITE, terms.tint, terms.model == FRESNEL_DIELECTRIC), mean);
     }
@@ -70,7 +70,7 @@ fn specular_albedos(material: Material, surface: Surface) -> mat2x3f {
         integrals.x = dielectric_under_coat(material, vec2f(place, row), integrals.x);
     }
     var film = vec4f();
-    if PLAN_THIN_FILM && has_film_table(material) {
+    if PLAN_THIN_FILM && (material.has_rough_tables & HOLDS_FILM) != 0u {
         film = vec4f(rough_albedo_lookup(first + ROUGH_ALBEDO_LENGTH, place, row).xyz, 1.0);
     }
     let below = of_dielectric(untinted(terms));

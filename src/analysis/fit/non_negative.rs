@@ -7,7 +7,7 @@ const ROUNDS: usize = 10;
 
 /// The x without negative components that minimises ½ xᵀ·gram·x − right·x; gram is symmetric and positive definite.
 /// `None` where it is not, or a number is not finite.
-pub(super) fn non_negative(gram: &[Vec<f64>], right: &[f64]) -> Option<Vec<f64>> {
+pub fn non_negative(gram: &[Vec<f64>], right: &[f64]) -> Option<Vec<f64>> {
     if !gram.iter().flatten().chain(right).all(|x| x.is_finite()) {
         return None;
     }

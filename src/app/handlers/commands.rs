@@ -21,7 +21,7 @@ use crate::app::sheets::{
     turntable::Preview,
     unsaved::Then,
 };
-use crate::app::workspaces::{LOOK, MEASURE};
+use crate::app::workspaces::Change;
 use crate::app::{App, is_dragging};
 use crate::document::{CameraSettings, Denoise, Document, History, MaterialSettings, PARAMETERS, parameter, setting};
 use crate::scene::{
@@ -48,13 +48,13 @@ impl App {
                 self.open(path);
             }
             Action::Drop(paths) => self.drop_files(paths),
-            Action::CancelLoading => self.worker.cancel_loading(),
+            Action::CancelLoading => self.worker.loading().cancel(),
             Action::Paste(text) => self.paste(&text),
             Action::PastePicture => {
                 self.warn("the clipboard holds an image: save it as a file, and open or drop that");
             }
-            Action::UseModel(source) => self.worker.open_model(source, ModelOptions::default()),
-            Action::ImportModel(source, options) => self.worker.open_model(source, options),
+            Action::UseModel(source) => self.open_model(source, ModelOptions::default()),
+            Action::ImportModel(source, options) => self.open_model(source, options),
             Action::UseEnvironment(source) => self.worker.open_environment(source),
             Action::ImportAs(lobe) => self.shared.import_lobe = lobe,
             Action::UseMaterial(material) => self.use_material(*material),
@@ -87,9 +87,9 @@ impl App {
             }
             Action::Reveal(pane) => self.reveal(pane),
             Action::Close(pane) => layout::close(&mut self.layout, pane),
-            Action::UseWorkspace(name) => {
+            Action::ChangeWorkspaces(change) => {
                 self.maximise(false);
-                self.workspaces.change(name, &mut self.layout);
+                self.workspaces.change(change, &mut self.layout);
             }
             Action::Edit(key) => self.edit_parameter(ctx, key),
             Action::UseEngine(choice) => {
@@ -391,8 +391,10 @@ impl App {
                 Action::UseBookmark(number),
             ));
         }
-        let workspace = |name| Findable::new(format!("Workspace {name}"), Action::UseWorkspace(name));
-        things.extend([LOOK, MEASURE].map(workspace));
+        for name in self.workspaces.names() {
+            let action = Action::ChangeWorkspaces(Change::Use(name.to_owned()));
+            things.push(Findable::new(format!("Workspace {name}"), action));
+        }
         for path in &self.shared.recent.paths {
             things.push(Findable::new(
                 format!("Open {}", file_name(path)),

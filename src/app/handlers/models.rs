@@ -45,7 +45,15 @@ impl App {
             beside,
             ..ModelOptions::default()
         };
-        self.worker.open_model(ModelSource::File(first), options);
+        self.open_model(ModelSource::File(first), options);
+    }
+
+    /// Opens a model. What is not saved is put aside before: a reader that crashes costs nothing.
+    pub fn open_model(&mut self, source: ModelSource, options: ModelOptions) {
+        if !self.edits.is_saved(&self.document) {
+            self.autosave.keep(&self.document, self.files.project.as_deref());
+        }
+        self.worker.open_model(source, options);
     }
 
     /// Takes files that were dropped together. Models are shown together; what they name is looked for among the files,

@@ -10,7 +10,7 @@ use crate::app::services::{
 use crate::app::{App, MOVING, is_dragging};
 use crate::document::{Change, Document};
 use crate::optics::lobe::Lobe;
-use crate::render::worker::{Activity, Event, Level, Pace, Picture, Snapshot};
+use crate::render::worker::{Activity, Event, Level, Pace, Picture, Snapshot, Worker};
 
 impl App {
     /// Records the frame's edit and hands the renderer what differs from what it has.
@@ -146,9 +146,9 @@ impl App {
         compare.match_look(ctx, &material);
         if compare.renderer.is_none() {
             let repainting = ctx.clone();
-            let spawned = self
-                .worker
-                .spawn_beside(engine.into(), move || repainting.request_repaint());
+            let spawned = Worker::spawn_with(engine.into(), self.worker.assets().clone(), move || {
+                repainting.request_repaint()
+            });
             let Ok(worker) = spawned else {
                 compare.is_on = false;
                 return self.fail("cannot start a thread to render B");

@@ -118,7 +118,12 @@ fn from_named(curve: Curve) -> CustomCurve {
         let length = lengths[FINE_STEPS] * share;
         fine[lengths.partition_point(|l| *l < length).min(FINE_STEPS)].map(|x| x as f32)
     };
-    CustomCurve::try_from(shares(POINTS - 1).map(at).collect::<Vec<_>>()).unwrap_or_default()
+    let mut points: Vec<[f32; 2]> = shares(POINTS - 1).map(at).collect();
+    let end = points[POINTS - 1];
+    // Where the curve is steep they would lie one over the other.
+    points.dedup_by(|next, last| next[0] - last[0] < 2.0 * XI_STEP_MIN);
+    points.last_mut().into_iter().for_each(|last| *last = end);
+    CustomCurve::try_from(points).unwrap_or_default()
 }
 
 /// From 0 to 1 in so many steps.

@@ -17,3 +17,4 @@ pub mod selection;
 pub mod shelves;
 pub mod viewing;
 pub mod watched;
+pub mod workspaces;

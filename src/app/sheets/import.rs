@@ -76,21 +76,16 @@ fn choices(ui: &mut Ui, model: &Model, options: &mut ModelOptions) {
 }
 
 /// One of several by name, or what the file chooses.
-fn choice<'a, T: PartialEq>(ui: &mut Ui, label: &str, chosen: &mut Option<T>, all: impl Iterator<Item = (T, &'a str)>) {
-    let own = (None, "the file's own");
-    let all: Vec<_> = std::iter::once(own)
-        .chain(all.map(|(value, name)| (Some(value), name)))
-        .collect();
-    let shown = all
-        .iter()
-        .find(|(value, _)| value == chosen)
-        .map_or("", |(_, name)| name);
-    let combo = ComboBox::from_label(label).selected_text(shown);
-    combo.show_ui(ui, |ui| {
-        for (value, name) in all {
-            ui.selectable_value(chosen, value, name);
-        }
-    });
+fn choice<'a, T: PartialEq + Clone>(
+    ui: &mut Ui,
+    label: &str,
+    chosen: &mut Option<T>,
+    all: impl Iterator<Item = (T, &'a str)>,
+) {
+    let own = (None, "the file's own", "");
+    let all = all.map(|(value, name)| (Some(value), name, ""));
+    let all: Vec<_> = std::iter::once(own).chain(all).collect();
+    widgets::row(ui, [label, label, ""], |ui| widgets::choice(ui, label, chosen, &all));
 }
 
 /// What became of the parts of the file, what is amiss first.

@@ -6,8 +6,7 @@ use crate::app::pane::Pane;
 use crate::app::services::edits::Edits;
 use crate::app::services::recent::Recent;
 use crate::app::sheets::palette::{self, Findable};
-use crate::app::sheets::{import, question, scrolled};
-use crate::app::workspaces::{LOOK, MEASURE};
+use crate::app::sheets::{import, question, scrolled, workspaces};
 use crate::document::{ImportLobe, MaterialSettings};
 use crate::render::EngineChoice;
 use crate::scene::Model;
@@ -36,18 +35,12 @@ pub enum Sheet {
 /// Groups of *View* that are menus of their own. What has a higher number is found by the palette alone.
 const SUBMENUS: [(u32, &str); 3] = [(4, "Camera"), (5, "Compare"), (6, "Pixels")];
 
-#[rustfmt::skip]
-const WORKSPACES: [(&str, &str); 2] = [
-    (MEASURE, "Effects, race, check, samples, lobe, inspector and convergence"),
-    (LOOK, "Presets, material, light and camera around a large viewport"),
-];
-
 pub fn bar(
     ui: &mut Ui,
     edits: &Edits,
     recent: &mut Recent,
     (import_lobe, engine): (ImportLobe, EngineChoice),
-    (workspace, is_open): (&str, impl Fn(Pane) -> bool),
+    (workspaces, is_open): ((&[&str], &str), impl Fn(Pane) -> bool),
     actions: &mut Vec<Action>,
 ) {
     MenuBar::new().ui(ui, |ui| {
@@ -88,14 +81,7 @@ pub fn bar(
             if ui.button(RichText::new(text).weak()).clicked() {
                 actions.push(Action::Do(Command::Palette));
             }
-            // From the right.
-            for (name, help) in WORKSPACES {
-                let tab = ui.selectable_label(name == workspace, name).on_hover_text(help);
-                if tab.clicked() {
-                    actions.push(Action::UseWorkspace(name));
-                }
-                tab.accessible_name(format!("Workspace {name}"));
-            }
+            workspaces::show(ui, workspaces, actions);
         });
     });
 }

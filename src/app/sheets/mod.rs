@@ -11,6 +11,7 @@ pub mod recovery;
 pub mod status;
 pub mod turntable;
 pub mod unsaved;
+mod workspaces;
 
 use std::path::PathBuf;
 

@@ -131,22 +131,16 @@ fn state(snapshot: &Snapshot) -> String {
 
 /// What the word stands for, in numbers.
 fn account(ui: &mut Ui, snapshot: &Snapshot) {
-    let progress = &snapshot.progress;
     let mut text: Vec<String> = Vec::new();
     if let Some(engine) = &snapshot.engine {
         text.push(format!("{}: {}", engine.kind.label(), engine.adapter));
     }
-    if progress.samples_wanted > 0 {
-        text.push(samples(progress));
-        if let Some(noise) = progress.noise {
-            text.push(format!("Estimated error {}", raw_error(snapshot, noise.relative)));
-            text.push(band(noise.low, noise.high));
+    if snapshot.progress.samples_wanted > 0 {
+        for (told, help) in progress(snapshot) {
+            text.push(told);
+            // The interval.
+            text.extend(help.into_iter().skip(1));
         }
-        if let Some(denoised) = &snapshot.denoised {
-            text.push(format!("Denoised: estimated error {}", error(denoised.value)));
-            text.push(band(denoised.low, denoised.high));
-        }
-        text.push(format!("{:.1} s of rendering", progress.render_seconds));
     }
     lines(ui, text);
 }

@@ -184,10 +184,14 @@ fn seen(desk: &Desk) -> Seen {
 /// What there is to be seen: parts of the light behind the image; maps of the light that is rendered.
 fn all_seen(desk: &Desk) -> Vec<(Seen, &'static str, &'static str)> {
     let rendered = desk.document.render.light_paths;
-    let maps = Shown::ALL.iter().filter(|(shown, ..)| *shown != Shown::Picture);
-    let maps = maps.map(|(shown, label, help)| ((*shown, rendered), *label, *help));
-    let (_, picture, help) = Shown::ALL[0];
-    let whole = ((Shown::Picture, LightPaths::All), picture, help);
+    let maps = Shown::ALL[1..]
+        .iter()
+        .map(|shown| ((*shown, rendered), shown.label(), shown.help()));
+    let whole = (
+        (Shown::Picture, LightPaths::All),
+        Shown::Picture.label(),
+        Shown::Picture.help(),
+    );
     let parts = [LightPaths::Direct, LightPaths::Indirect];
     let parts = parts.map(|part| ((Shown::Picture, part), part.label(), part.help()));
     std::iter::once(whole).chain(parts).chain(maps).collect()

@@ -53,11 +53,11 @@ fn legend(ui: &mut Ui, area: Rect, map: Option<&PrecisionMap>, is_busy: bool) {
     ui.painter().rect_filled(rect, 4.0, Color32::from_black_alpha(170));
     let mut ui = in_bar(ui, "precision", rect);
     if let Some(map) = map {
-        for (fault, label, help) in Fault::ALL {
+        for &fault in Fault::ALL {
             let (square, _) = ui.allocate_exact_size(vec2(SQUARE, SQUARE), Sense::hover());
             ui.painter().rect_filled(square, 2.0, rgb(fault.color()));
-            let text = format!("{} {label}", map.count(fault));
-            ui.colored_label(Color32::WHITE, text).on_hover_text(help);
+            ui.colored_label(Color32::WHITE, format!("{} {}", map.count(fault), fault.label()))
+                .on_hover_text(fault.help());
         }
         ui.colored_label(Color32::LIGHT_GRAY, format!("of {} pixels", map.findings.len()));
     }

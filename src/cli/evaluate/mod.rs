@@ -65,7 +65,7 @@ pub struct EvaluateArguments {
     #[arg(long, default_value = "auto", value_name = "auto|gpu|cpu")]
     engine: EngineChoice,
     /// The precision of the arithmetic; f64 on the CPU alone.
-    #[arg(long, default_value = "f32", value_name = "f32|f64", value_parser = precision)]
+    #[arg(long, default_value = "f32", value_name = "f32|f64")]
     precision: Precision,
     #[command(flatten)]
     answer: Answer,
@@ -93,14 +93,6 @@ struct Asked {
     /// Directional albedos, reflected and transmitted, at these cosines of the view.
     #[arg(long, value_name = "COS[,COS…]", value_delimiter = ',', value_parser = parse::number_in(1e-3..=1.0), allow_negative_numbers = true)]
     albedo: Vec<f64>,
-}
-
-fn precision(text: &str) -> Result<Precision, String> {
-    match text {
-        "f32" => Ok(Precision::Single),
-        "f64" => Ok(Precision::Double),
-        _ => Err("give f32 or f64".to_owned()),
-    }
 }
 
 /// Evaluates and writes the numbers.

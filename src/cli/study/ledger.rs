@@ -5,7 +5,7 @@ use std::time::Duration;
 use super::{CommonArguments, watched};
 use crate::console::output;
 use crate::plot::BarPlot;
-use crate::study::ledger::{Entry, Ledger, LedgerOptions, ledger};
+use crate::study::ledger::{Ledger, LedgerEntry, LedgerOptions, ledger};
 
 const COLUMNS: &str = "name,label,instead,ms_with,ms_without,ms,share_of_frame,noise_share,picture_change,\
                        picture_change_low,picture_change_high,words";
@@ -45,7 +45,7 @@ fn print(found: &Ledger) {
 }
 
 fn plot(ledger: &Ledger) -> BarPlot {
-    let bar = |entry: &Entry| (entry.label.clone(), 100.0 * entry.share_of_frame);
+    let bar = |entry: &LedgerEntry| (entry.label.clone(), 100.0 * entry.share_of_frame);
     BarPlot {
         title: format!("What is paid for what: {}", ledger.machine.adapter),
         label: "Share of the frame's time (%); below 0: time is saved".to_owned(),

@@ -4,7 +4,6 @@ use super::group::groups;
 use super::vectors::Vectors;
 use super::*;
 use crate::instructions;
-use crate::job::BackgroundKind;
 use crate::scene::{Hit, Packet};
 
 impl<T: Single> Integrator<'_, T> {
@@ -23,7 +22,7 @@ impl<T: Single> Integrator<'_, T> {
         }
         vectorized!(T, {
             paths.set_counters(self.settings.seed);
-            for group in groups(0..paths.count()) {
+            for group in groups(0..paths.count) {
                 self.camera_rays(&group, paths);
             }
         });
@@ -36,7 +35,7 @@ impl<T: Single> Integrator<'_, T> {
         packets: &mut Vec<Packet>,
         hits: &mut Vec<Option<Hit>>,
     ) {
-        let count = paths.count();
+        let count = paths.count;
         packets.clear();
         for first in (0..count).step_by(PACKET) {
             let mut packet = Packet {
@@ -53,14 +52,9 @@ impl<T: Single> Integrator<'_, T> {
         hits.truncate(count);
     }
 
-    /// Whether the background is a plain look-up, without blur.
-    pub fn has_plain_background(&self) -> bool {
-        !matches!(self.settings.background, BackgroundKind::Blurred(_))
-    }
-
     /// Results of paths whose camera rays all miss.
     pub fn shade_background<R: Recorder>(&self, paths: &Paths<R>, results: &mut Results) {
-        let count = paths.count();
+        let count = paths.count;
         vectorized!(T, {
             for group in groups::<T>(0..count) {
                 let uv = self.escaped_uv(group.vector(&paths.state.direction), 0);

@@ -14,29 +14,17 @@ use crate::scene::catcher::{catcher_light, catcher_reflectance};
 /// Dimensions of the catcher's choice to mirror, and (the next one) of the background's blur: beyond those of every path.
 pub const CATCHER_DIMENSION: u32 = 12288;
 
-/// How the shadow catcher affects the lanes of a group.
-#[derive(Clone, Copy)]
-pub struct CatcherMasks<T: Single> {
-    /// Lanes with a visible surface; the others show the background unchanged.
-    pub is_visible: T::Mask,
-    /// Lanes that the catcher mirrors.
-    pub is_mirrored: T::Mask,
-}
-
 impl<T: Single> Integrator<'_, T> {
-    /// Applies the shadow catcher to hits.
+    /// Applies the shadow catcher to hits. Returns the lanes with a visible surface (the others show the background
+    /// unchanged) and those that the catcher mirrors.
     #[inline(always)]
     pub fn apply_catcher<R: Recorder>(
         &self,
         point: &SurfacePoint<T>,
         vertex: &mut PathVertex<T>,
         paths: &mut Paths<R>,
-    ) -> CatcherMasks<T> {
-        let nothing = T::Mask::splat(false);
-        let mut masks = CatcherMasks {
-            is_visible: vertex.active,
-            is_mirrored: nothing,
-        };
+    ) -> [T::Mask; 2] {
+        let mut masks = [vertex.active, T::Mask::splat(false)];
         let Some(catcher) = self.settings.catcher else {
             return masks;
         };
@@ -63,7 +51,7 @@ impl<T: Single> Integrator<'_, T> {
         point: &SurfacePoint<T>,
         vertex: &mut PathVertex<T>,
         paths: &mut Paths<R>,
-    ) -> CatcherMasks<T> {
+    ) -> [T::Mask; 2] {
         let (group, members) = (vertex.group, vertex.members);
         let positions = point.position.to_each();
         let light = Vec3::<T>::from_lanes(|lane| catcher_light(self.tables, catcher.table, positions[lane]));
@@ -111,9 +99,6 @@ impl<T: Single> Integrator<'_, T> {
             0,
             paths,
         );
-        CatcherMasks {
-            is_visible,
-            is_mirrored,
-        }
+        [is_visible, is_mirrored]
     }
 }

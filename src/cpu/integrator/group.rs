@@ -28,13 +28,6 @@ pub fn groups<T: Single>(indices: Range<usize>) -> impl Iterator<Item = Group<T>
 }
 
 impl<T: Single> Group<T> {
-    /// The group of a wave with a single path.
-    pub const ALONE: Self = Self {
-        first: 0,
-        count: 1,
-        of: PhantomData,
-    };
-
     inlined! {
         /// Lanes that have a path.
         pub fn mask(&self) -> T::Mask {

@@ -1,7 +1,7 @@
 //! Light at path vertices: the environment, emission and next-event estimation, combined by multiple importance sampling
 //! (MIS).
 
-use super::shadow_rays::{ShadowRay, ShadowRays};
+use super::shadow_rays::ShadowRays;
 use super::*;
 use crate::cpu::recorder::Purpose;
 use crate::job::BackgroundKind;
@@ -38,7 +38,7 @@ impl<T: Single> Integrator<'_, T> {
         if self.samples_environment {
             density = self.environment_probability * environment_density_at(self.distribution, uv);
         }
-        self.mis_weighted(Source::Environment, radiance, density, ray, paths)
+        self.mis_weighted(LightSource::Environment, radiance, density, ray, paths)
     }
 
     inlined! {
@@ -121,7 +121,7 @@ impl<T: Single> Integrator<'_, T> {
                 vertex.distance,
                 self.density_per_luminance,
             );
-            self.mis_weighted(Source::Surface, emission, density, vertex, paths)
+            self.mis_weighted(LightSource::Surface, emission, density, vertex, paths)
         }
 
         /// The share of its mean radiance that a light with a profile sends in each lane's direction.
@@ -135,14 +135,14 @@ impl<T: Single> Integrator<'_, T> {
         /// could not have drawn this direction.
         fn mis_weighted<R: Recorder>(
             &self,
-            source: Source,
+            source: LightSource,
             radiance: Vec3<T>,
             light_density: T,
             vertex: &PathVertex<T>,
             paths: &mut Paths<R>,
         ) -> Vec3<T> {
             let is_sampled = match source {
-                Source::Surface => self.samples_emitters,
+                LightSource::Surface => self.samples_emitters,
                 _ => self.samples_environment,
             };
             let (zero, one) = (T::ZERO, T::ONE);
@@ -253,8 +253,7 @@ impl<T: Single> Integrator<'_, T> {
         }
 
         /// Next-event estimation, first half: samples one light direction per lane, evaluates the material, and leaves a pending
-        /// shadow ray. Lanes that cannot receive light from there get none. If events are recorded, it returns the material's
-        /// value without the MIS weight.
+        /// shadow ray. Lanes that cannot receive light from there get none.
         pub fn sample_direct_light<R: Recorder>(
             &self,
             point: &SurfacePoint<T>,
@@ -262,7 +261,7 @@ impl<T: Single> Integrator<'_, T> {
             layers: &Layers<T>,
             vertex: &PathVertex<T>,
             paths: &mut Paths<R>,
-        ) -> Vec3<T> {
+        ) {
             let (group, zero) = (vertex.group, T::ZERO);
             let sampled = self.sample_light_directions(point, &group, paths);
             let wi = sampled.direction;
@@ -278,10 +277,6 @@ impl<T: Single> Integrator<'_, T> {
             let mut value = Vec3::ZERO;
             if reaches.any() {
                 value = Vec3::select(reaches, evaluate(competing), value);
-            }
-            let mut unweighted = Vec3::ZERO;
-            if R::KEEPS {
-                unweighted = Vec3::select(sampled.density.above_zero(), evaluate(zero), unweighted);
             }
             let mut radiance = sampled.radiance;
             if self.samples_emitters {
@@ -307,33 +302,28 @@ impl<T: Single> Integrator<'_, T> {
                 }
             }
             if R::KEEPS {
-                let light = paths.shadow_rays.get(0);
-                vertex
-                    .members
-                    .record(&mut paths.outputs, vertex.active & !is_lit, |lane| {
-                        light.event(unweighted.lane(lane), 0.0, Vec3::ZERO)
-                    });
+                let unweighted = Vec3::select(sampled.density.above_zero(), evaluate(zero), Vec3::ZERO);
+                let is_environment = self.samples_of_environment(&group, &paths.shadow_rays).to_bits();
+                vertex.members.record(&mut paths.outputs, vertex.active, |lane| {
+                    let (kept, unweighted) = (value.lane(lane).to_f32(), unweighted.lane(lane).to_f32());
+                    Event::Light {
+                        source: match is_environment >> lane & 1 {
+                            1 => LightSource::Environment,
+                            _ => LightSource::Surface,
+                        },
+                        direction: wi.lane(lane).to_f32(),
+                        density: sampled.density.lane(lane),
+                        value: unweighted,
+                        weight: [0, 1, 2].map(|i| if kept[i] > 0.0 { kept[i] / unweighted[i] } else { 0.0 }),
+                        visible: 0.0,
+                        radiance: [0.0; 3],
+                    }
+                });
             }
-            unweighted
         }
 
-        /// Visibility along a shadow ray in [0, 1]: 0 is blocked, values between come from holes.
-        pub fn visibility(&self, light: &ShadowRay, rays: &mut u32) -> f32 {
-            if light.is_known_miss {
-                return 1.0;
-            }
-            self.transmittance(light.origin, light.direction, light.distance, rays)
-        }
-
-        /// Next-event estimation, second half: adds the light of unoccluded shadow rays. `unweighted` is what
-        /// [`Integrator::sample_direct_light`] returned for a path that is recorded.
-        pub fn add_direct_light<R: Recorder>(
-            &self,
-            group: &Group<T>,
-            bounce: u32,
-            unweighted: Vec3<T>,
-            paths: &mut Paths<R>,
-        ) {
+        /// Next-event estimation, second half: adds the light of unoccluded shadow rays.
+        pub fn add_direct_light<R: Recorder>(&self, group: &Group<T>, bounce: u32, paths: &mut Paths<R>) {
             let shadow_rays = &paths.unoccluded_rays;
             let members = group.members(&shadow_rays.ids);
             let is_environment = self.samples_of_environment(group, shadow_rays);
@@ -350,10 +340,10 @@ impl<T: Single> Integrator<'_, T> {
             let share = group.number(&shadow_rays.visibility) / group.number(&shadow_rays.density);
             let light = group.vector(&shadow_rays.throughput) * (group.vector(&shadow_rays.value) * radiance * share);
             if R::KEEPS {
-                let ray = shadow_rays.get(0);
-                members.record(&mut paths.outputs, group.mask(), |lane| {
-                    let (unweighted, radiance) = (unweighted.lane(lane), radiance.lane(lane));
-                    ray.event(unweighted, ray.visibility, radiance)
+                let visibility = group.number(&shadow_rays.visibility);
+                members.for_each(&mut paths.outputs, group.mask(), |path, lane| {
+                    let arrived = (visibility.lane(lane), radiance.lane(lane).to_f32());
+                    path.recorder.light_arrives(arrived.0, arrived.1);
                 });
             }
             // A path has one light sample; accounts differ by its source.

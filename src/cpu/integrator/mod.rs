@@ -17,7 +17,7 @@ mod wave;
 
 use std::borrow::Cow;
 
-use super::recorder::{End, Event, Recorder, Source};
+use super::recorder::{End, Event, LightSource, Recorder};
 use crate::job::effect::EffectId;
 use crate::job::guides::{GUIDE_SAMPLES, GuideSums};
 use crate::job::light_sums::ENVIRONMENT_GROUP;
@@ -36,7 +36,7 @@ use crate::scene::{Geometry, PACKET};
 pub use catcher::CATCHER_DIMENSION;
 use catcher_hit::CatcherHit;
 use group::{Group, Members};
-use paths::{GuideRecord, Paths, StartOptions};
+use paths::{GuideRecord, Paths};
 pub use results::Results;
 pub use wave::WAVE_SAMPLES;
 pub use wave::{BLOCK_PIXELS, PATHS, Tile, Wave};
@@ -72,7 +72,7 @@ pub struct PathResult {
 }
 
 /// A job's scene and settings, converted to the precision of shading.
-pub(super) struct Integrator<'a, T: Single> {
+pub struct Integrator<'a, T: Single> {
     geometry: &'a Geometry,
     environment: &'a Environment,
     /// Distribution from which light sampling draws environment directions.
@@ -111,11 +111,11 @@ enum Origin<T> {
 }
 
 impl<T: Single> Origin<T> {
-    fn source(&self) -> Source {
+    fn source(&self) -> LightSource {
         match self {
-            Self::Environment => Source::Environment,
-            Self::Background => Source::Background,
-            Self::Surface(_) => Source::Surface,
+            Self::Environment => LightSource::Environment,
+            Self::Background => LightSource::Background,
+            Self::Surface(_) => LightSource::Surface,
         }
     }
 
@@ -130,7 +130,7 @@ impl<T: Single> Origin<T> {
 
 /// Path vertices of a group: where its rays ended, on a surface or outside the scene, and how they got there.
 #[derive(Clone, Copy)]
-pub(super) struct PathVertex<T: Single> {
+pub struct PathVertex<T: Single> {
     group: Group<T>,
     members: Members<T>,
     bounce: u32,
@@ -196,24 +196,6 @@ impl<'a, T: Single> Integrator<'a, T> {
     /// Whether light is sampled (next-event estimation).
     fn samples_light(&self) -> bool {
         self.samples_environment || self.samples_emitters
-    }
-
-    /// The state that paths need beyond their rays.
-    fn start_options(&self) -> StartOptions {
-        StartOptions {
-            guide_samples: self.guide_samples,
-            light_groups: self.light_groups,
-            has_catcher: self.settings.catcher.is_some(),
-            counts_rough: self.settings.roulette_floor < 1.0,
-            medium: self
-                .has_absorption
-                .then(|| self.settings.camera_medium.unwrap_or(NO_MEDIUM)),
-        }
-    }
-
-    /// Result of a path by its id; the path has ended.
-    fn result<R: Recorder>(&self, paths: &Paths<R>, number: usize) -> PathResult {
-        paths.result(number, self.settings.least_reflections == 0)
     }
 
     inlined! {
@@ -441,36 +423,6 @@ impl<'a, T: Single> Integrator<'a, T> {
             Vec3::select(is_beyond, contribution * kept, contribution),
             Vec3::select(is_beyond, contribution * (T::ONE - kept), nothing),
         ]
-    }
-    /// Traces the pending shadow ray of a recorded path and adds its light. `unweighted` is the result of
-    /// [`Integrator::sample_direct_light`].
-    fn record_direct_light<R: Recorder>(&self, unweighted: Vec3<T>, bounce: u32, paths: &mut Paths<R>) {
-        if !std::mem::take(&mut paths.shadow_rays.is_pending[0]) {
-            return;
-        }
-        let light = paths.shadow_rays.get(0);
-        let visibility = self.visibility(&light, &mut paths.outputs[0].rays);
-        paths.shadow_rays.visibility[0] = visibility;
-        if visibility > 0.0 {
-            paths.gather_unoccluded(&[0], true);
-            self.locate_unoccluded(&Group::ALONE, paths);
-            self.add_direct_light(&Group::ALONE, bounce, unweighted, paths);
-        } else {
-            let unweighted = unweighted.to_each()[0];
-            paths.outputs[0]
-                .recorder
-                .record(|| light.event(unweighted, visibility, Vec3::ZERO));
-        }
-    }
-}
-
-impl Integrator<'_, f32> {
-    /// Traces one path through a pixel, a wave of its own, and appends its events.
-    pub fn record_path(&self, pixel: [u32; 2], sample: u32, events: &mut Vec<Event>) -> PathResult {
-        let mut wave = Wave::<Vec<Event>>::new(PACKET, 1, self.sequence());
-        self.trace_wave(&Tile::new(pixel, [1; 2]), [sample, 1], &mut wave);
-        events.append(&mut wave.paths.outputs[0].recorder);
-        self.result(&wave.paths, 0)
     }
 }
 

@@ -1,6 +1,6 @@
 //! The paths of a wave as structure of arrays: groups of lanes load and store whole vectors.
 //!
-//! [`State`] holds what a path needs to continue. Its order changes from bounce to bounce, so that paths which are shaded
+//! [`PathStates`] holds what a path needs to continue. Its order changes from bounce to bounce, so that paths which are shaded
 //! together are adjacent; a position in it is an *index*. [`PathOutput`] holds what a path accumulates, by its *id*: its
 //! fixed number in the wave.
 
@@ -13,7 +13,7 @@ use crate::scene::Hit;
 use std::mem::swap;
 
 /// What paths need to continue, by index.
-pub struct State {
+pub struct PathStates {
     pub ids: Vec<u16>,
     /// Keys of the random sequences, see [`RandomState`].
     pub keys: Vec<u32>,
@@ -35,7 +35,7 @@ pub struct State {
     pub media: Vec<u32>,
 }
 
-impl State {
+impl PathStates {
     fn new(count: usize) -> Self {
         Self {
             ids: vec![0; count],
@@ -67,25 +67,12 @@ impl State {
     }
 }
 
-/// Which optional state the paths of a wave have.
-pub struct StartOptions {
-    /// Samples per pixel that record first-hit guides.
-    pub guide_samples: u32,
-    /// Light groups that are summed apart.
-    pub light_groups: usize,
-    pub has_catcher: bool,
-    /// Whether non-specular bounces are counted.
-    pub counts_rough: bool,
-    /// Slot of the medium around the camera; `None` if no medium absorbs.
-    pub medium: Option<u32>,
-}
-
 /// The paths of a wave.
 pub struct Paths<R> {
     pub sequence: Sequence,
-    pub state: State,
+    pub state: PathStates,
     /// Target of [`Paths::reorder`], which then swaps it with `state`.
-    scratch: State,
+    scratch: PathStates,
     pub origin: Vectors,
     /// True if the ray is known to miss: no traversal needed.
     pub is_known_miss: Vec<bool>,
@@ -101,7 +88,8 @@ pub struct Paths<R> {
     pub shadow_rays: ShadowRays,
     /// The unoccluded shadow rays, compacted.
     pub unoccluded_rays: ShadowRays,
-    count: usize,
+    /// Number of paths in the wave.
+    pub count: usize,
     /// Pixel coordinates (x, y), by path id; `samples` are sample numbers.
     pub pixels: [Vec<u32>; 2],
     pub samples: Vec<u32>,
@@ -131,8 +119,8 @@ impl<R: Recorder> Paths<R> {
         let count = count + lanes;
         Self {
             sequence,
-            state: State::new(count),
-            scratch: State::new(count),
+            state: PathStates::new(count),
+            scratch: PathStates::new(count),
             origin: Vectors::new(count),
             is_known_miss: vec![false; count],
             is_active: vec![false; count],
@@ -161,12 +149,7 @@ impl<R: Recorder> Paths<R> {
         self.cut = 0.0;
     }
 
-    /// Number of paths in the wave.
-    pub fn count(&self) -> usize {
-        self.count
-    }
-
-    /// Adds one sample of each pixel, offset by `corner`. [`Paths::set_counters`] and [`Paths::start`] complete the new
+    /// Adds one sample of each pixel, offset by `corner`. [`Paths::set_counters`] and [`Integrator::start`] complete the new
     /// paths.
     pub fn add(&mut self, corner: [u32; 2], pixels: &[[u32; 2]], sample: u32) {
         let added = self.count..self.count + pixels.len();
@@ -194,40 +177,13 @@ impl<R: Recorder> Paths<R> {
 
     /// Makes empty results for the added paths.
     pub fn add_outputs(&mut self) {
-        self.outputs.resize_with(self.count, PathOutput::new);
-    }
-
-    /// Initialises the added paths for their camera rays.
-    pub fn start(&mut self, start_options: &StartOptions) {
-        let guide_samples = start_options.guide_samples;
-        self.state.throughput.fill(1.0);
-        self.state.lobe_density.fill(0.0);
-        self.state.is_mirror.fill(true);
-        self.is_known_miss.fill(false);
-        self.is_active.fill(true);
-        self.add_outputs();
-        let samples = &self.samples[..self.count];
-        if samples.iter().any(|sample| *sample < guide_samples) {
-            self.guides
-                .extend(samples.iter().map(|sample| GuideRecord::new(*sample < guide_samples)));
-        }
-        self.light_groups
-            .resize(self.count * start_options.light_groups, Vec3::ZERO);
-        if start_options.has_catcher {
-            self.catcher_hits.resize(self.count, CatcherHit::Miss);
-        }
-        if start_options.counts_rough {
-            for state in [&mut self.state, &mut self.scratch] {
-                state.rough_bounces.clear();
-                state.rough_bounces.resize(state.ids.len(), 0);
-            }
-        }
-        if let Some(medium) = start_options.medium {
-            for state in [&mut self.state, &mut self.scratch] {
-                state.media.clear();
-                state.media.resize(state.ids.len(), medium);
-            }
-        }
+        self.outputs.resize_with(self.count, || PathOutput {
+            radiance: Vec3::ZERO,
+            clamped: 0.0,
+            alpha: 1.0,
+            rays: 0,
+            recorder: R::default(),
+        });
     }
 
     /// Reorders the state: index i becomes the path of index `order[i]`. Drops all others.
@@ -245,23 +201,6 @@ impl<R: Recorder> Paths<R> {
             sample: self.state.samples[index],
             sequence: self.sequence,
         }
-    }
-
-    /// Result of a path by id; `is_all_light` is false if only a part of the light is rendered.
-    pub fn result(&self, number: usize, is_all_light: bool) -> PathResult {
-        let output = &self.outputs[number];
-        let result = PathResult {
-            radiance: output.radiance,
-            alpha: output.alpha,
-            rays: output.rays,
-            clamped: output.clamped,
-            guides: self
-                .guides
-                .get(number)
-                .map_or_else(GuideSums::default, |record| record.guides),
-        };
-        let catcher_hit = self.catcher_hits.get(number).copied().unwrap_or_default();
-        catcher_hit.result(result, is_all_light)
     }
 
     /// Takes the light of the groups from paths whose light has become alpha, see [`CatcherHit::result`].
@@ -290,6 +229,58 @@ impl<R: Recorder> Paths<R> {
     }
 }
 
+impl<T: Single> Integrator<'_, T> {
+    /// Initialises the added paths for their camera rays.
+    pub fn start<R: Recorder>(&self, paths: &mut Paths<R>) {
+        let is_guided = |sample: &u32| *sample < self.guide_samples;
+        paths.state.throughput.fill(1.0);
+        paths.state.lobe_density.fill(0.0);
+        paths.state.is_mirror.fill(true);
+        paths.is_known_miss.fill(false);
+        paths.is_active.fill(true);
+        paths.add_outputs();
+        let samples = &paths.samples[..paths.count];
+        if samples.iter().any(is_guided) {
+            paths.guides.extend(samples.iter().map(|sample| GuideRecord {
+                is_active: is_guided(sample),
+                guides: GuideSums::default(),
+            }));
+        }
+        paths.light_groups.resize(paths.count * self.light_groups, Vec3::ZERO);
+        if self.settings.catcher.is_some() {
+            paths.catcher_hits.resize(paths.count, CatcherHit::Miss);
+        }
+        for state in [&mut paths.state, &mut paths.scratch] {
+            if self.settings.roulette_floor < 1.0 {
+                state.rough_bounces.clear();
+                state.rough_bounces.resize(state.ids.len(), 0);
+            }
+            if self.has_absorption {
+                let medium = self.settings.camera_medium.unwrap_or(NO_MEDIUM);
+                state.media.clear();
+                state.media.resize(state.ids.len(), medium);
+            }
+        }
+    }
+
+    /// Result of a path by its id; the path has ended.
+    pub fn result<R: Recorder>(&self, paths: &Paths<R>, number: usize) -> PathResult {
+        let output = &paths.outputs[number];
+        let result = PathResult {
+            radiance: output.radiance,
+            alpha: output.alpha,
+            rays: output.rays,
+            clamped: output.clamped,
+            guides: paths
+                .guides
+                .get(number)
+                .map_or_else(GuideSums::default, |record| record.guides),
+        };
+        let catcher_hit = paths.catcher_hits.get(number).copied().unwrap_or_default();
+        catcher_hit.result(result, self.settings.least_reflections == 0)
+    }
+}
+
 /// Accumulated result of a path.
 pub struct PathOutput<R> {
     pub radiance: Vec3<f32>,
@@ -307,26 +298,4 @@ pub struct GuideRecord {
     /// True while the path still records: it has met only mirrors and clear glass.
     pub is_active: bool,
     pub guides: GuideSums,
-}
-
-impl GuideRecord {
-    fn new(is_active: bool) -> Self {
-        Self {
-            is_active,
-            guides: GuideSums::default(),
-        }
-    }
-}
-
-impl<R: Recorder> PathOutput<R> {
-    /// An empty result.
-    pub fn new() -> Self {
-        Self {
-            radiance: Vec3::ZERO,
-            clamped: 0.0,
-            alpha: 1.0,
-            rays: 0,
-            recorder: R::default(),
-        }
-    }
 }

@@ -1,5 +1,6 @@
 //! Rays of a path: camera rays, intersection and transmittance.
 
+use super::shadow_rays::ShadowRays;
 use super::*;
 use crate::cpu::recorder::Purpose;
 use crate::optics::random::random_pair;
@@ -29,15 +30,10 @@ impl<T: Single> Integrator<'_, T> {
         });
     }
 
-    /// Share of light in [0, 1] that passes along a ray of length `distance`: the product of (1 − opacity) of the surfaces
-    /// on it.
-    pub fn transmittance(&self, mut origin: Vec3<f32>, direction: Vec3<f32>, distance: f32, rays: &mut u32) -> f32 {
-        if !self.has_holes {
-            *rays += 1;
-            let is_occluded = self.geometry.occluded(origin.to_f32(), direction.to_f32(), distance);
-            return if is_occluded { 0.0 } else { 1.0 };
-        }
-        let (mut transmittance, mut remaining) = (1.0, distance);
+    /// Share of light in [0, 1] that passes along a shadow ray: the product of (1 − opacity) of the surfaces on it.
+    pub fn transmittance(&self, shadow_rays: &ShadowRays, index: usize, rays: &mut u32) -> f32 {
+        let (mut origin, direction) = (shadow_rays.origin.get(index), shadow_rays.direction.get(index));
+        let (mut transmittance, mut remaining) = (1.0, shadow_rays.distance[index]);
         for _ in 0..PASSES_MAX {
             *rays += 1;
             let Some(hit) = self.geometry.intersect(origin.to_f32(), direction.to_f32(), remaining) else {
@@ -60,10 +56,6 @@ impl<T: Single> Integrator<'_, T> {
             return false;
         }
         let (mut origin, direction) = (paths.origin.get(index), paths.state.direction.get(index));
-        if !self.has_holes {
-            let hit = self.geometry.intersect(origin.to_f32(), direction.to_f32(), f32::MAX);
-            return paths.record_hit(index, hit);
-        }
         let dimension = OPACITY_DIMENSION + bounce;
         let [mut xi, _]: [f32; 2] = random_pair(paths.random_state(index), dimension);
         paths.output_at(index).recorder.record(|| Event::Number {

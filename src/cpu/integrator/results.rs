@@ -9,8 +9,8 @@ use crate::optics::prelude::*;
 /// Results by path id. The fields have room for one more group of lanes.
 pub struct Results {
     count: usize,
-    /// See [`Results::has_extras`].
-    has_extras: bool,
+    /// Whether results have more than radiance and alpha: clamped luminance or guides.
+    pub has_extras: bool,
     /// Sum over paths of the throughput's luminance where the bounce limit ended them.
     pub cut: f64,
     radiance: Vectors,
@@ -20,7 +20,7 @@ pub struct Results {
     /// First-hit guides; empty if no path records them.
     guides: Vec<GuideSums>,
     /// Light of each group, those of a path in a row; empty if they are not summed apart.
-    light_groups: Vec<Vec3<f32>>,
+    pub light_groups: Vec<Vec3<f32>>,
 }
 
 impl Results {
@@ -75,11 +75,6 @@ impl Results {
         self.rays[..self.count].iter().copied().map(u64::from).sum()
     }
 
-    /// Whether results have more than radiance and alpha: clamped luminance or guides.
-    pub fn has_extras(&self) -> bool {
-        self.has_extras
-    }
-
     /// Starts over with `count` paths, each counting its camera ray.
     pub fn start(&mut self, count: usize, has_extras: bool) {
         (self.count, self.has_extras, self.cut) = (count, has_extras, 0.0);
@@ -98,12 +93,6 @@ impl Results {
                 self.guides.push(result.guides);
             }
         }
-    }
-
-    /// Stores the light of the groups of all paths.
-    pub fn set_groups(&mut self, lights: &[Vec3<f32>]) {
-        self.light_groups.clear();
-        self.light_groups.extend_from_slice(lights);
     }
 
     /// Stores the results of a group of consecutive paths.

@@ -1,8 +1,6 @@
 //! Shadow rays of the paths of a wave.
 
 use super::vectors::{Vectors, gather};
-use crate::cpu::recorder::{Event, Source};
-use crate::optics::vector::Vec3;
 
 /// Shadow rays as structure of arrays, by path index.
 pub struct ShadowRays {
@@ -56,20 +54,6 @@ impl ShadowRays {
         }
     }
 
-    /// The shadow ray of one path.
-    pub fn get(&self, index: usize) -> ShadowRay {
-        ShadowRay {
-            origin: self.origin.get(index),
-            direction: self.direction.get(index),
-            distance: self.distance[index],
-            density: self.density[index],
-            value: self.value.get(index),
-            is_environment: self.is_environment[index],
-            is_known_miss: self.is_known_miss[index],
-            visibility: self.visibility[index],
-        }
-    }
-
     /// Compacts the fields of unoccluded rays that adding their light needs, in the given order. Emitters' fields are copied
     /// only if they are sampled. `ids` are the paths' by index.
     pub fn gather_unoccluded(&mut self, from: &Self, ids: &[u16], order: &[u16], samples_emitters: bool) {
@@ -84,43 +68,5 @@ impl ShadowRays {
         self.value.gather(&from.value, order);
         self.throughput.gather(&from.throughput, order);
         gather(&mut self.visibility, &from.visibility, order);
-    }
-}
-
-/// The shadow ray of one path; see [`ShadowRays`] for the fields.
-#[derive(Clone, Copy, Debug)]
-pub struct ShadowRay {
-    pub origin: Vec3<f32>,
-    pub direction: Vec3<f32>,
-    pub distance: f32,
-    pub density: f32,
-    pub value: Vec3<f32>,
-    pub is_environment: bool,
-    pub is_known_miss: bool,
-    pub visibility: f32,
-}
-
-impl ShadowRay {
-    /// Where its light comes from.
-    pub fn source(&self) -> Source {
-        if self.is_environment {
-            Source::Environment
-        } else {
-            Source::Surface
-        }
-    }
-
-    /// The recorded event of this ray; `unweighted` is its value without the MIS weight.
-    pub fn event(&self, unweighted: Vec3<f32>, visibility: f32, radiance: Vec3<f32>) -> Event {
-        let (unweighted, kept) = (unweighted.to_f32(), self.value.to_f32());
-        Event::Light {
-            source: self.source(),
-            direction: self.direction.to_f32(),
-            density: self.density,
-            value: unweighted,
-            weight: [0, 1, 2].map(|i| if kept[i] > 0.0 { kept[i] / unweighted[i] } else { 0.0 }),
-            visible: visibility,
-            radiance: radiance.to_f32(),
-        }
     }
 }

@@ -10,6 +10,7 @@ use super::group::groups;
 use super::*;
 use crate::cpu::recorder::Unrecorded;
 use crate::instructions;
+use crate::job::BackgroundKind;
 use crate::job::tiles::TILE_SIDE;
 use crate::optics::layer::material_layers;
 use crate::scene::{Hit, OCTANTS, Packet, ray_octant};
@@ -78,11 +79,6 @@ impl<R: Recorder> Wave<R> {
     fn hit_range(&self) -> Range<usize> {
         0..self.hits.len()
     }
-
-    /// Indices of the paths that escaped, after [`Integrator::sort_hits`].
-    fn escaped_range(&self) -> Range<usize> {
-        self.hits.len()..self.order.len()
-    }
 }
 
 impl<T: Single> Integrator<'_, T> {
@@ -99,10 +95,10 @@ impl<T: Single> Integrator<'_, T> {
             let samples = [from, WAVE_SAMPLES.min(first + count - from)];
             let is_all_background = self.trace_wave(tile, samples, wave);
             if !is_all_background {
-                let results = (0..wave.paths.count()).map(|number| self.result(&wave.paths, number));
+                let results = (0..wave.paths.count).map(|number| self.result(&wave.paths, number));
                 wave.results.fill(results);
                 wave.paths.finish_groups();
-                wave.results.set_groups(&wave.paths.light_groups);
+                wave.results.light_groups.clone_from(&wave.paths.light_groups);
                 wave.results.cut = wave.paths.cut;
             }
             report(samples, &wave.results);
@@ -115,21 +111,22 @@ impl<T: Single> Integrator<'_, T> {
         // One path per pixel and sample, with its camera ray.
         self.add_paths(tile, samples, &mut wave.paths);
         let has_extras = self.firefly_clamp.is_some() || samples[0] < self.guide_samples;
-        wave.results.start(wave.paths.count(), has_extras);
+        wave.results.start(wave.paths.count, has_extras);
         // Camera rays of neighbouring pixels are coherent: trace them in packets. A tile of background alone ends here, which
         // is cheaper, because no path state is set up. Surfaces with holes need a random number per hit instead (`intersect`).
         if !self.has_holes {
             self.trace_camera_rays(&wave.paths, &mut wave.packets, &mut wave.intersections);
-            let is_short = !R::KEEPS && self.has_plain_background() && self.light_groups == 0;
+            let is_short =
+                !R::KEEPS && self.light_groups == 0 && !matches!(self.settings.background, BackgroundKind::Blurred(_));
             if is_short && wave.intersections.iter().all(Option::is_none) {
                 self.shade_background(&wave.paths, &mut wave.results);
                 return true;
             }
-            wave.intersections.resize(wave.paths.count(), None);
+            wave.intersections.resize(wave.paths.count, None);
         }
-        wave.paths.start(&self.start_options());
+        self.start(&mut wave.paths);
         wave.active.clear();
-        wave.active.extend(0..wave.paths.count() as u16);
+        wave.active.extend(0..wave.paths.count as u16);
         for bounce in 0.. {
             // 1. Continuation rays; those of the camera have been traced above.
             if bounce > 0 && !self.has_holes {
@@ -232,7 +229,7 @@ impl<T: Single> Integrator<'_, T> {
 
     /// Ends escaped paths with the environment's light, and shades the hits slot by slot.
     fn shade<R: Recorder>(&self, bounce: u32, wave: &mut Wave<R>) {
-        let (hits, escaped) = (wave.hit_range(), wave.escaped_range());
+        let (hits, escaped) = (wave.hit_range(), wave.hits.len()..wave.order.len());
         let paths = &mut wave.paths;
         paths.shadow_rays.is_pending[hits.clone()].fill(false);
         // A recorded path draws them later (`shade_group`), so that its events are in order.
@@ -281,8 +278,8 @@ impl<T: Single> Integrator<'_, T> {
         let mut vertex = PathVertex::new(group, bounce, paths);
         let point = out_of_line!(T, self.surfaces(&vertex, slot, paths));
         // The shadow catcher is not there from below or without light: those camera rays escape to the background.
-        let catcher = self.apply_catcher(&point, &mut vertex, paths);
-        let is_passed = vertex.active & !catcher.is_visible;
+        let [is_visible, is_mirrored] = self.apply_catcher(&point, &mut vertex, paths);
+        let is_passed = vertex.active & !is_visible;
         if is_passed.any() {
             let ray = PathVertex {
                 active: is_passed,
@@ -291,10 +288,7 @@ impl<T: Single> Integrator<'_, T> {
             out_of_line!(T, self.escape(&ray, self.escaped_uv(ray.direction, ray.bounce), paths));
         }
         // Lanes that the catcher mirrors shade with another material: two passes, usually one of them empty.
-        let passes = [
-            (catcher.is_visible & !catcher.is_mirrored, false),
-            (catcher.is_visible & catcher.is_mirrored, true),
-        ];
+        let passes = [(is_visible & !is_mirrored, false), (is_visible & is_mirrored, true)];
         for (active, is_catcher_mirror) in passes {
             if !active.any() {
                 continue;
@@ -312,11 +306,7 @@ impl<T: Single> Integrator<'_, T> {
                     if R::KEEPS {
                         self.light_xi(&group, bounce, paths);
                     }
-                    let unweighted =
-                        out_of_line!(T, self.sample_direct_light(&point, material, layers, &vertex, paths));
-                    if R::KEEPS {
-                        self.record_direct_light(unweighted, bounce, paths);
-                    }
+                    out_of_line!(T, self.sample_direct_light(&point, material, layers, &vertex, paths));
                 }
                 out_of_line!(T, self.scatter(&point, material, layers, &vertex, paths));
             }
@@ -329,13 +319,13 @@ impl<T: Single> Integrator<'_, T> {
         let Wave { paths, octants, .. } = wave;
         octants.clear();
         for index in hits {
-            if !paths.shadow_rays.is_pending[index] {
+            if !paths.shadow_rays.is_pending[index] || paths.shadow_rays.is_known_miss[index] {
                 continue;
             }
             let rays = &mut paths.outputs[usize::from(paths.state.ids[index])].rays;
             if self.has_holes {
-                paths.shadow_rays.visibility[index] = self.visibility(&paths.shadow_rays.get(index), rays);
-            } else if !paths.shadow_rays.is_known_miss[index] {
+                paths.shadow_rays.visibility[index] = self.transmittance(&paths.shadow_rays, index, rays);
+            } else {
                 *rays += 1;
                 octants.add(ray_octant(paths.shadow_rays.direction.get(index).to_f32()), index);
             }
@@ -389,7 +379,7 @@ impl<T: Single> Integrator<'_, T> {
                 self.locate_unoccluded(&group, paths);
             }
             for group in groups(0..unoccluded.len()) {
-                self.add_direct_light(&group, bounce, Vec3::ZERO, paths);
+                self.add_direct_light(&group, bounce, paths);
             }
         });
     }

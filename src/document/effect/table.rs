@@ -170,7 +170,7 @@ effects! {
     EdgeTint "Edge tint" "Metals whose reflection is tinted towards grazing angles (F82)."
         AnyMaterial(|m| m.has_specular() && m.edge_tint != Vec3::splat(1.0), "tints its edge"),
         EachMaterial(|material| material.edge_tint = [1.0; 3]);
-    MultipleScattering "Multiple scattering" "Light that meets more than one facet of rough GGX, in metals and clear dielectrics (Turquin 2019)."
+    MultipleScattering "Multiple scattering" "Light that meets more than one facet of rough GGX, in metals and clear dielectrics, as random walks between facets have it."
         AnyMaterial(|m| m.has_flag(COMPENSATES), "would lose light between its facets"),
         EachMaterial(|material| material.multiple_scattering = false);
     Fuzz "Fuzz" "Small fibres over the other lobes, brightest at the edge: velvet, peach, dust."
@@ -198,8 +198,8 @@ effects! {
     ThinFilm "Thin film" "Interference in a film over the surface that reflects: soap, oil, tempered steel."
         AnyMaterial(|m| m.has_film == 1, "has a thin film"),
         EachMaterial(|material| material.film_weight = 0.0);
-    FilmBands "Film bands" "Thin films of more than three wavelengths, whose fine fringes a band of wavelengths blurs."
-        AnyMaterial(|m| m.has_flag(FILM_BANDS), "has a film thicker than three wavelengths"),
+    FilmBands "Film bands" "Thin films of more than four wavelengths, whose fine fringes a band of wavelengths blurs."
+        AnyMaterial(|m| m.has_flag(FILM_BANDS), "has a film thicker than four wavelengths"),
         EachMaterial(|material| material.film_bands = false);
     Transmission "Refraction" "Light that passes through surfaces and is refracted there."
         AnyMaterial(Material::transmits, "transmits light"),

@@ -51,6 +51,12 @@ impl<T> Parameter<T> {
         self
     }
 
+    /// Without an option on the command line.
+    pub(super) fn hidden(mut self) -> Self {
+        self.flag = None;
+        self
+    }
+
     pub(super) fn applies(mut self, applies: fn(&T) -> bool) -> Self {
         self.applies = applies;
         self

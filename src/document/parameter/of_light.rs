@@ -4,7 +4,7 @@ use std::sync::LazyLock;
 
 use super::accessors::{choice, color, field, rows, toggle};
 use super::line::{ends, real, single};
-use super::{Kind, Parameter, Stage, Takes, Value};
+use super::{Kind, Parameter, Stage, Takes};
 use crate::document::{AreaLight, AreaLightShape, range};
 
 /// Every parameter of an area light, in the order of its rows; the keys are those of project files.
@@ -21,7 +21,7 @@ pub static LIGHT_PARAMETERS: LazyLock<Vec<Parameter<AreaLight>>> = LazyLock::new
         "lighting.area_lights.width" "Width" "In bounding radii of the model. A small light makes sharp shadows." field(width, real(range::AREA_LENGTH, "")).idle(of_lamps).bar(0.0, 4.0);
         "lighting.area_lights.height" "Height" "In bounding radii of the model." field(height, real(range::AREA_LENGTH, "")).idle(of_flat).bar(0.0, 4.0);
         "lighting.area_lights.cone_deg" "Cone" "The angle across the cone into which a spot shines." field(cone_deg, real(range::CONE_DEG, "°")).idle(of_spots).bar(1.0, 120.0).decimals(1);
-        "lighting.area_lights.softness" "Softness" "The share of the cone over which a spot fades to its edge." field(softness, real(range::SOFTNESS, "")).idle(of_spots).bar(0.0, 1.0);
+        "lighting.area_lights.softness" "Softness" "The share of the cone over which a spot fades to its edge." field(softness, real(0.0..=1.0, "")).idle(of_spots).bar(0.0, 1.0);
         "lighting.area_lights.angle_deg" "Angle" "How large a sun is in the sky; the real one measures 0.53°. A large one makes soft shadows." field(angle_deg, real(range::SUN_ANGLE_DEG, "°")).idle(of_suns).bar(0.05, 10.0);
         "lighting.area_lights.color" "Colour" "Colour of the light." color(color);
         "lighting.area_lights.strength" "Strength" "Radiance of the light: a larger one of the same strength gives more light. Of a sun the irradiance of what faces it." field(strength, single(range::STRENGTH, ""))
@@ -59,16 +59,5 @@ impl Parameter<AreaLight> {
     pub fn word(&self) -> &'static str {
         let last = self.key.rsplit('.').next().unwrap_or(self.key);
         last.trim_end_matches("_deg")
-    }
-
-    /// The numbers that a light has of it, with their range.
-    pub(in crate::document) fn numbers(&self, light: &AreaLight) -> Vec<(&'static str, f64, [f64; 2])> {
-        let key = self.key;
-        match (self.get(light), &self.kind) {
-            (Value::Number(x), Kind::Number { range, .. }) => vec![(key, x, *range)],
-            (Value::Place(place), Kind::Place { range }) => place.map(|x| (key, x, *range)).to_vec(),
-            (Value::Color(color), _) => color.map(|x| (key, x.into(), [0.0, 1.0])).to_vec(),
-            _ => Vec::new(),
-        }
     }
 }

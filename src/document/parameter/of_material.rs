@@ -93,7 +93,7 @@ pub static PARAMETERS: LazyLock<Vec<Parameter>> = LazyLock::new(|| {
         "thin_film.thickness_texture" "Thickness texture" "Multiplies the thickness by a texture." toggle(textures[On::FilmThickness]);
         "thin_film.ior" "Index of refraction" "How strongly the film reflects: soap 1.33, oil 1.47, oxide of steel 2.4; at the base's own there is none to see." field(film_ior, single(1.0..=3.0, ""))
             .symbol("n").bar(1.0, 3.0);
-        "thin_film.bands" "Bands" "Blurs the fine fringes of films thicker than three wavelengths, as a band of wavelengths does. Off, each channel is one wavelength." toggle(film_bands);
+        "thin_film.bands" "Bands" "Blurs the fine fringes of films thicker than four wavelengths, as a band of wavelengths does. Off, each channel is one wavelength." toggle(film_bands);
         "transmission.weight" "Weight" "How much of the base is clear instead of diffuse: glass, water, amber. The surface must be closed." share(transmission_weight)
             .applies(|material| material.metalness < 1.0);
         "transmission.weight_texture" "Weight texture" "Multiplies the weight by a texture." toggle(textures[On::Transmission]);

@@ -6,7 +6,7 @@ mod gpu;
 mod shipped;
 mod tiff_files;
 pub(crate) use gpu::is_container;
-pub use shipped::{is_shipped, shipped};
+pub use shipped::shipped;
 
 use std::borrow::Cow;
 use std::fmt;

@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use crate::scene::texture::SHIPPED;
+
 macro_rules! maps {
     ($($file:literal)*) => { &[$(($file, include_bytes!(concat!("../../../assets/maps/", $file)))),*] };
 }
@@ -12,13 +14,8 @@ const MAPS: &[(&str, &[u8])] = maps! {
     "weave-shade.png"
 };
 
-/// Whether a path names a shipped map, as `shipped:/weave.png` does, and no file.
-pub fn is_shipped(path: &Path) -> bool {
-    path.starts_with("shipped:")
-}
-
 /// The contents of a shipped map; `None` for files.
 pub fn shipped(path: &Path) -> Option<&'static [u8]> {
-    let name = path.strip_prefix("shipped:").ok()?.to_str()?;
+    let name = path.strip_prefix(SHIPPED).ok()?.to_str()?;
     MAPS.iter().find(|(map, _)| *map == name).map(|(_, bytes)| *bytes)
 }

@@ -1,9 +1,6 @@
 //! Choice of the device that denoises.
 
-use std::sync::Mutex;
-
 use crate::named::named;
-use crate::panics::lock;
 
 named! {
     /// Device that the user asks for.
@@ -16,18 +13,7 @@ named! {
     }
 }
 
-static CHOSEN: Mutex<DenoiseDevice> = Mutex::new(DenoiseDevice::Auto);
-
 impl DenoiseDevice {
-    /// Holds for all denoisers that are opened from now on.
-    pub fn choose(self) {
-        *lock(&CHOSEN) = self;
-    }
-
-    pub fn chosen() -> Self {
-        *lock(&CHOSEN)
-    }
-
     /// Devices to try in order, by their places in the library's list, which begins with the fastest; given their kinds.
     pub fn candidates(self, kinds: &[i32]) -> Vec<usize> {
         let (cpus, gpus): (Vec<_>, Vec<_>) = (0..kinds.len()).partition(|place| kinds[*place] == CPU);

@@ -64,12 +64,7 @@ impl Device {
         let mut failure = LibraryError::Device("there is no device for it".to_owned());
         for place in choice.candidates(&kinds) {
             match Self::open(functions, place as c_int, kinds[place]) {
-                Ok(device) => {
-                    if choice == DenoiseDevice::Gpu && !device.is_gpu() {
-                        warn_once(&format!("no GPU can denoise here ({failure}), so the CPU does"));
-                    }
-                    return Ok(device);
-                }
+                Ok(device) => return Ok(device),
                 Err(error) => {
                     log::info!(
                         "the denoiser's {} device does not work: {error}",
@@ -130,14 +125,6 @@ impl Device {
             (0, true) => Err(LibraryError::Device("there is no device for it".to_owned())),
             _ => Err(LibraryError::Device(text)),
         }
-    }
-}
-
-/// Logs a warning, if it is the first one: devices are opened more than once.
-fn warn_once(text: &str) {
-    static WAS_SAID: AtomicBool = AtomicBool::new(false);
-    if !WAS_SAID.swap(true, Relaxed) {
-        log::warn!("{text}");
     }
 }
 

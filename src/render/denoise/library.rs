@@ -12,6 +12,7 @@ use super::filter::Device;
 use super::functions::{Functions, one_line};
 use super::library_error::{FOLDER_VARIABLE, LibraryError, MIN_VERSION, NAME};
 use crate::panics::lock;
+use crate::render::MachineOptions;
 
 /// File name prefixes of the library's own dependencies, in load order. Loaded first if they lie beside it, because the
 /// loader does not search there.
@@ -107,7 +108,11 @@ impl Library {
         let functions = Functions::bind(&loaded).map_err(|error| broken(path, &error))?;
         std::mem::forget(loaded);
         let functions: &'static Functions = Box::leak(Box::new(functions));
-        let device = Device::of(functions, DenoiseDevice::chosen())?;
+        let choice = MachineOptions::get().denoise_device;
+        let device = Device::of(functions, choice)?;
+        if choice == DenoiseDevice::Gpu && !device.is_gpu() {
+            log::warn!("no GPU can denoise here, so the CPU does");
+        }
         let version = device.int(c"version");
         let library = Self {
             functions,

@@ -25,6 +25,7 @@ pub use picture::{Denoised, Noisy};
 
 use crate::analysis::denoised::{Colors, DenoisedHalves, Errors};
 use crate::document::Denoise;
+use crate::render::MachineOptions;
 
 /// Pixels per filter run at most. Larger images are filtered in bands, to bound memory.
 const PIXELS_MAX: usize = 1 << 22;
@@ -45,7 +46,10 @@ impl Denoiser {
     /// A denoiser on the chosen device.
     pub fn open() -> Result<Self, LibraryError> {
         Ok(Self {
-            device: Arc::new(Device::of(Library::get()?.functions, DenoiseDevice::chosen())?),
+            device: Arc::new(Device::of(
+                Library::get()?.functions,
+                MachineOptions::get().denoise_device,
+            )?),
             filters: Vec::new(),
             pixels_max: PIXELS_MAX,
         })
@@ -54,10 +58,9 @@ impl Denoiser {
     /// Goes over to the CPU, after an error of the GPU.
     fn leave_gpu(&mut self, error: &LibraryError) -> Result<(), LibraryError> {
         log::warn!(
-            "the {} device stopped denoising ({error}), so the CPU denoises from now on",
+            "the {} device stopped denoising ({error}), so the CPU denoises",
             self.device.kind_name()
         );
-        DenoiseDevice::Cpu.choose();
         self.filters.clear();
         self.device = Arc::new(Device::of(Library::get()?.functions, DenoiseDevice::Cpu)?);
         Ok(())

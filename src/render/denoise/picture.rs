@@ -111,7 +111,7 @@ impl Noisy {
 impl NoisyHalf {
     /// Copies one half of a film; `None` if too many pixels lack samples.
     fn of(film: &Film, number: usize, guide_samples: &(dyn Fn(usize) -> f64 + Sync), pixels: &[usize]) -> Option<Self> {
-        let has_samples = |pixel: usize| film.halves(pixel)[number].samples > 0.0;
+        let has_samples = |pixel: usize| film.pixels[pixel][number].samples > 0.0;
         let present = pixels.iter().filter(|pixel| has_samples(**pixel)).count();
         let (missing, first) = (pixels.len() - present, pixels.iter().find(|pixel| has_samples(**pixel)));
         if missing as f64 > MISSING_SHARE * pixels.len() as f64 {
@@ -127,7 +127,7 @@ impl NoisyHalf {
         });
         let sources: Vec<usize> = sources.collect();
         let of_pixel = |pixel: &usize| {
-            let half = film.halves(*pixel)[number];
+            let half = film.pixels[*pixel][number];
             let [albedo, normal] = match film.guides.get(*pixel) {
                 Some(guides) => guides[number].means(guide_samples(*pixel)),
                 None => Default::default(),

@@ -1,12 +1,12 @@
 //! Choice and opening of the engine.
 
-use std::sync::Mutex;
+use std::sync::OnceLock;
 
 use super::{Engine, EngineChoice, EngineInfo, cpu, gpu};
 use crate::gpu::{AdapterKind, GpuAdapter, GpuDevice, GpuError, Traversal, scatter::Scatterer};
 use crate::job::scatter::{ScatterCloud, ScatterRequest};
 use crate::named::named;
-use crate::panics::lock;
+use crate::render::denoise::DenoiseDevice;
 
 named! {
     /// Whether kernels use ray queries instead of our own traversal.
@@ -19,16 +19,27 @@ named! {
     }
 }
 
-static CHOSEN: Mutex<RayQueries> = Mutex::new(RayQueries::Auto);
+/// What the command line says of the machine. It holds for the whole process, and is never changed: each session, worker,
+/// queue and study would carry the same two choices otherwise.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct MachineOptions {
+    pub ray_queries: RayQueries,
+    pub denoise_device: DenoiseDevice,
+}
 
-impl RayQueries {
-    /// Holds for all engines that are opened from now on.
-    pub fn choose(self) {
-        *lock(&CHOSEN) = self;
+static MACHINE: OnceLock<MachineOptions> = OnceLock::new();
+
+impl MachineOptions {
+    /// Holds from now on, if nothing was asked for before.
+    pub fn set(ray_queries: RayQueries, denoise_device: DenoiseDevice) {
+        MACHINE.get_or_init(|| Self {
+            ray_queries,
+            denoise_device,
+        });
     }
 
-    pub fn chosen() -> Self {
-        *lock(&CHOSEN)
+    pub fn get() -> Self {
+        *MACHINE.get_or_init(Self::default)
     }
 }
 
@@ -73,7 +84,7 @@ fn auto() -> (Engine, EngineInfo) {
 /// Traversal on an adapter, with what there is to say about the choice. On software Vulkan, ray queries are slower than our
 /// own traversal.
 fn traversal(adapter: &GpuAdapter) -> (Traversal, &'static str) {
-    match (RayQueries::chosen(), adapter.has_ray_queries()) {
+    match (MachineOptions::get().ray_queries, adapter.has_ray_queries()) {
         (RayQueries::On, true) => (Traversal::RayQueries, "with ray queries, chosen by you"),
         (RayQueries::On, false) => (Traversal::Own, "without ray queries, which the adapter does not have"),
         (RayQueries::Off, true) => (Traversal::Own, "without ray queries, chosen by you"),

@@ -10,7 +10,7 @@ use crate::job::{Job, film::Film, tiles::Schedule};
 use crate::named::named;
 
 pub(crate) use choice::device_for_functions;
-pub use choice::{RayQueries, Sampler};
+pub use choice::{MachineOptions, RayQueries, Sampler};
 
 named! {
     /// The engine that a user asks for.
@@ -63,16 +63,14 @@ impl fmt::Display for EngineInfo {
     }
 }
 
-/// Precision in which `evaluate` asks for a material on the CPU; the engines shade in f32.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize)]
-pub enum Precision {
-    /// f32.
-    #[default]
-    #[serde(rename = "f32")]
-    Single,
-    /// f64.
-    #[serde(rename = "f64")]
-    Double,
+named! {
+    /// Precision in which `evaluate` asks for a material on the CPU; the engines shade in f32.
+    #[derive(Default)]
+    Precision {
+        #[default]
+        Single, "f32", "f32", "What the engines shade in.";
+        Double, "f64", "f64", "On the CPU alone.";
+    }
 }
 
 /// One of the two engines.

@@ -10,7 +10,7 @@ use crate::render::denoise::Noisy;
 use crate::render::frame::Frame;
 use crate::render::light_layers::{LightLayer, light_layers, mixed};
 use crate::render::output::{self, Layers, Rendered};
-use crate::render::shown::Source;
+use crate::render::shown::FilmSource;
 use crate::render::sums::KeptFilm;
 
 impl Session {
@@ -87,12 +87,12 @@ impl Session {
     }
 
     /// Inputs of a frame's maps; `None` if another film is being rendered.
-    pub fn source<'a>(&'a mut self, frame: &'a Frame) -> Result<Option<Source<'a>>, SessionError> {
+    pub fn source<'a>(&'a mut self, frame: &'a Frame) -> Result<Option<FilmSource<'a>>, SessionError> {
         if !self.has_film_of(frame) {
             return Ok(None);
         }
         let world_units_per_unit = self.world_units_per_unit();
-        Ok(Some(Source {
+        Ok(Some(FilmSource {
             film: self.engine.film()?,
             denoised_errors: frame.errors.as_ref().map(|errors| &errors[..]),
             world_units_per_unit,

@@ -83,7 +83,7 @@ impl Session {
             compiler: Compiler::default(),
             document: None,
             job: None,
-            film: FilmId::new(),
+            film: FilmId::another(),
             convergence: Convergence::default(),
             render_time: Duration::ZERO,
             step_time: Duration::ZERO,
@@ -241,7 +241,7 @@ impl Session {
     }
 
     fn begin_film(&mut self) {
-        self.film = FilmId::new();
+        self.film = FilmId::another();
         (self.denoised, self.is_stuck) = (None, false);
         self.convergence = Convergence::default();
         (self.render_time, self.step_time, self.fallback_seconds) = (Duration::ZERO, Duration::ZERO, 0.0);

@@ -189,20 +189,13 @@ impl Worker {
         Self::spawn_with(choice, Assets::default(), repaint)
     }
 
-    /// Starts another worker that shares models and environments with this one.
-    ///
-    /// # Errors
-    /// If no thread can be started.
-    pub fn spawn_beside(&self, choice: EngineChoice, repaint: impl Fn() + Send + 'static) -> io::Result<Self> {
-        Self::spawn_with(choice, self.assets.clone(), repaint)
-    }
-
     /// The loaded models and environments, to be shared.
     pub fn assets(&self) -> &Assets {
         &self.assets
     }
 
-    fn spawn_with(choice: EngineChoice, assets: Assets, repaint: impl Fn() + Send + 'static) -> io::Result<Self> {
+    /// The same with assets that may be shared with other workers and sessions.
+    pub fn spawn_with(choice: EngineChoice, assets: Assets, repaint: impl Fn() + Send + 'static) -> io::Result<Self> {
         let shared = Arc::new(Shared::default());
         let (orders, received) = channel();
         let (of_thread, its_assets, to_itself) = (shared.clone(), assets.clone(), orders.clone());
@@ -309,11 +302,6 @@ impl Worker {
             state.is_inspected = is_inspected;
             state.republish();
         });
-    }
-
-    /// Cancels loading; the current render continues.
-    pub fn cancel_loading(&self) {
-        self.loading().cancel();
     }
 
     /// Progress of loading for the window.

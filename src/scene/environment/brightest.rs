@@ -9,7 +9,7 @@ use crate::optics::vector::Vec3;
 const SHARE: f64 = 0.5;
 
 /// Centre (u, v) of the cells around the brightest one that are at least half as bright; `None` for a black map.
-pub(super) fn brightest(luminances: &Luminances) -> Option<[f32; 2]> {
+pub fn brightest(luminances: &Luminances) -> Option<[f32; 2]> {
     let cells = &luminances.cells;
     let first = (0..cells.len()).max_by(|a, b| cells[*a].total_cmp(&cells[*b]))?;
     let least = SHARE * cells[first];

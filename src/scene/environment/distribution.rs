@@ -22,7 +22,7 @@ pub struct Cell {
 }
 
 /// A borrowed latitude-longitude map.
-pub(super) struct Map<'a> {
+pub struct Map<'a> {
     pub width: u32,
     pub height: u32,
     pub texels: &'a [[f32; 4]],
@@ -62,7 +62,7 @@ fn cell_luminances(map: &Map, row: u32) -> Vec<f64> {
 
 /// A texel's weight in the integral of the bilinear map over the sphere: the integral of its hat function, which stays 1
 /// from the first and last row's centres to the poles.
-pub(super) fn texel_solid_angle(row: u32, width: u32, height: u32) -> f64 {
+pub fn texel_solid_angle(row: u32, width: u32, height: u32) -> f64 {
     let step_rad = PI / f64::from(height);
     let polar_rad = (f64::from(row) + 0.5) * step_rad;
     // ∫ (1 − t / step) sin(start + t) dt over t in [0, step].
@@ -81,7 +81,7 @@ pub(super) fn texel_solid_angle(row: u32, width: u32, height: u32) -> f64 {
 }
 
 /// Mean radiance of the bilinear map over the sphere, and its largest luminance.
-pub(super) fn summarise(map: &Map) -> ([f32; 3], f32) {
+pub fn summarise(map: &Map) -> ([f32; 3], f32) {
     let width = map.width as usize;
     let of_rows = parallel::map(map.texels.len() / width, |row| {
         let texels = &map.texels[row * width..][..width];
@@ -123,7 +123,7 @@ pub struct Distribution {
 impl Distribution {
     /// A distribution proportional to the cells' luminances above `floor`, rounded to whole numbers of 2⁻²⁴ within a row.
     /// All densities are 0 if none is above.
-    pub(super) fn new(luminances: &Luminances, floor: f64) -> Self {
+    pub fn new(luminances: &Luminances, floor: f64) -> Self {
         let Luminances { width, height, .. } = *luminances;
         let columns = width as usize;
         let of_rows = parallel::map(height as usize, |row| {
@@ -158,29 +158,29 @@ impl Distribution {
     }
 
     /// A distribution proportional to the luminance above the mean, or to all of it for a nearly uniform map.
-    pub(super) fn of_excess(luminances: &Luminances) -> Self {
+    pub fn of_excess(luminances: &Luminances) -> Self {
         let mean = luminances.mean_of(|luminance| luminance);
         let excess = luminances.mean_of(|luminance| (luminance - mean).max(0.0));
         Self::new(luminances, if excess < EXCESS_MIN * mean { 0.0 } else { mean })
     }
 
     /// Bytes in memory.
-    pub(super) fn bytes(&self) -> usize {
+    pub fn bytes(&self) -> usize {
         size_of_val(&self.cells[..]) + size_of_val(&self.rows[..])
     }
 
     /// The row that a number draws.
-    pub(super) fn row(&self, number: u32) -> u32 {
+    pub fn row(&self, number: u32) -> u32 {
         find(self.height, number, |row| self.rows[row as usize])
     }
 
     /// A row, as it is drawn.
-    pub(super) fn row_at(&self, row: u32) -> Drawn {
+    pub fn row_at(&self, row: u32) -> Drawn {
         drawn(row, |row| self.rows[row as usize])
     }
 
     /// The column that a number draws in a row.
-    pub(super) fn column(&self, row: u32, number: u32) -> Drawn {
+    pub fn column(&self, row: u32, number: u32) -> Drawn {
         let first = row * self.width;
         let share = |column| self.cells[(first + column) as usize].share;
         drawn(find(self.width, number, share), share)
@@ -193,7 +193,7 @@ fn cell_solid_angle(row: usize, width: u32, height: u32) -> f64 {
 }
 
 /// Mean luminance of the bilinear map in each cell.
-pub(super) struct Luminances {
+pub struct Luminances {
     /// In the order of the texels.
     pub cells: Vec<f64>,
     /// Columns of cells: the map's, or halved until there are at most [`MAX_CELLS`].
@@ -203,7 +203,7 @@ pub(super) struct Luminances {
 }
 
 impl Luminances {
-    pub(super) fn of(map: &Map) -> Self {
+    pub fn of(map: &Map) -> Self {
         let (width, height) = cells_size(map.width, map.height);
         let row = |row| cell_row_luminances(map, row as u32, width, height);
         Self {

@@ -25,7 +25,7 @@ const SLIVERS_SHARE: f64 = 1.0 / 16.0;
 
 /// Builds the tree over `count` triangles. Also returns the order of its leaves. More than `part_max` triangles are halved
 /// along the longest side of their bounds, because building takes several hundred bytes per triangle.
-pub(super) fn tree(
+pub fn tree(
     count: u32,
     part_max: u32,
     box_of: impl Fn(u32) -> Aabb + Sync,

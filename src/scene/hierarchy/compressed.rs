@@ -12,7 +12,7 @@ use super::tree::BoxedTree;
 const LEAF_TRIANGLES: u32 = 3;
 
 /// Compresses a tree; `primitive_indices` maps leaf entries to triangles.
-pub(super) fn compress(tree: &BoxedTree<'_>) -> CwBvh {
+pub fn compress(tree: &BoxedTree<'_>) -> CwBvh {
     let root = tree.root;
     let mut nodes = vec![Bvh2Node::default()];
     let mut open = vec![(root, 0)];
@@ -36,7 +36,7 @@ pub(super) fn compress(tree: &BoxedTree<'_>) -> CwBvh {
 }
 
 /// Levels of nodes.
-pub(super) fn depth(compressed: &CwBvh) -> usize {
+pub fn depth(compressed: &CwBvh) -> usize {
     let mut deepest = 0;
     let mut open = vec![(0_usize, 1)];
     while let Some((index, level)) = open.pop() {

@@ -3,10 +3,10 @@
 //! The boxes of a mesh are tested in its own space. Its triangles are tested in the geometry's space, with corners moved as by
 //! [`Placement::point`]. So hits are those on the same triangles stored one by one, to the bit, and watertight like them.
 
-use fearless_simd::{ExtractToken, Level, Simd, SimdBase, dispatch, f32x8};
+use fearless_simd::{ExtractToken, Level, Simd, SimdBase, f32x8};
 use glam::{DAffine3, DMat3, DVec3, Mat3A, Vec3A};
 
-use super::traverse::{BoxRay, ClosestHit, Entry, HitSink, Leaves, RELATIVE_ERROR, SingleRay, TriangleRay};
+use super::traverse::{BoxRay, ClosestHit, HitSink, Leaves, RELATIVE_ERROR, SingleRay, StackEntry, TriangleRay};
 use super::wide::{Block, Normals, WIDTH, Wide};
 use crate::optics::vector::Vec3;
 use crate::scene::intersect::{Hit, RayFrame, triangle_normal};
@@ -19,7 +19,7 @@ const EXTENT: f32 = 4.0;
 
 /// Where an instance's mesh is.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::scene) struct Placement {
+pub struct Placement {
     /// Images of the mesh's axes, and of its origin.
     axes: [[f32; 3]; 3],
     offset: [f32; 3],
@@ -120,7 +120,7 @@ impl Placement {
 }
 
 /// What is below an instance.
-pub(in crate::scene) struct Bottom<'a> {
+pub struct Bottom<'a> {
     pub wide: &'a Wide,
     pub placement: &'a Placement,
     /// First triangle.
@@ -160,7 +160,7 @@ fn trace<'a, S: Simd, const ANY: bool>(
         leaves: instances,
     };
     let mut closest = ClosestHit::before(t_max);
-    ray.traverse::<ANY, _>(top, Entry::ROOT, &mut closest);
+    ray.traverse::<ANY, _>(top, StackEntry::ROOT, &mut closest);
     closest.hit()
 }
 
@@ -197,7 +197,7 @@ impl<'a, S: Simd, F: Fn(u32) -> Bottom<'a>> Leaves for InstanceRay<'_, S, F> {
                     first: below.first,
                 },
             };
-            if ray.traverse::<ANY, M>(below.wide, Entry::ROOT, sink) {
+            if ray.traverse::<ANY, M>(below.wide, StackEntry::ROOT, sink) {
                 return true;
             }
         }

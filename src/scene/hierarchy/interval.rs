@@ -2,10 +2,10 @@
 //! ray.
 
 use crate::optics::real::inlined;
-use fearless_simd::{ExtractToken, Level, Simd, SimdBase, SimdMask, dispatch, f32x8};
+use fearless_simd::{ExtractToken, Level, Simd, SimdBase, SimdMask, f32x8};
 
 use super::packet::{PACKET, Packet, PacketRays, load};
-use super::traverse::{Entry, INVERSE_MAX, RELATIVE_ERROR, Stack};
+use super::traverse::{INVERSE_MAX, RELATIVE_ERROR, Stack, StackEntry};
 use super::wide::{BLOCK, WIDTH, Wide};
 
 /// Entry points at most. Every packet visits all of them, so that more would not pay.
@@ -13,9 +13,9 @@ const ENTRY_POINTS_MAX: usize = 6;
 
 /// Nodes from which packets may start their traversal, instead of the root. Rays that miss all of them miss the scene.
 #[derive(Clone, Copy)]
-pub(in crate::scene) struct EntryPoints {
+pub struct EntryPoints {
     /// Sorted by distance, the nearest last.
-    entries: [Entry; ENTRY_POINTS_MAX],
+    entries: [StackEntry; ENTRY_POINTS_MAX],
     count: usize,
 }
 
@@ -26,7 +26,7 @@ impl EntryPoints {
     }
 
     /// Pushes the entry points onto a traversal stack.
-    pub(super) fn push_to(&self, stack: &mut Stack) {
+    pub fn push_to(&self, stack: &mut Stack) {
         for entry in &self.entries[..self.count] {
             stack.push(*entry);
         }
@@ -52,7 +52,7 @@ impl Wide {
 #[inline(always)]
 fn entry_points<S: Simd>(simd: S, wide: &Wide, packets: &[Packet]) -> Option<EntryPoints> {
     let mut entry_points = EntryPoints {
-        entries: [Entry::ROOT; ENTRY_POINTS_MAX],
+        entries: [StackEntry::ROOT; ENTRY_POINTS_MAX],
         count: 0,
     };
     if wide.nodes.is_empty() {
@@ -102,7 +102,7 @@ fn extent<'a, S: Simd>(simd: S, mut numbers: impl Iterator<Item = &'a [f32; PACK
 }
 
 /// A child's index among the children of all nodes.
-pub(super) struct ChildId(pub u32);
+pub struct ChildId(pub u32);
 
 impl ChildId {
     fn new(node: u32, child: usize) -> Self {
@@ -116,7 +116,7 @@ impl ChildId {
 }
 
 /// Interval bounds of a set of rays, for tests against eight boxes at a time.
-pub(super) struct RayInterval<S: Simd> {
+pub struct RayInterval<S: Simd> {
     /// Minimum and maximum inverse direction on each axis.
     inverse: [[f32x8<S>; 2]; 3],
     /// Origins on each axis: the one nearest to a box's near side, and the one farthest from its far side; with a margin for
@@ -215,7 +215,7 @@ impl<S: Simd> RayInterval<S> {
                 let child = (hit_bits.trailing_zeros() % WIDTH as u32) as usize;
                 hit_bits &= hit_bits - 1;
                 wide.prefetch(node.children[child]);
-                stack.insert(Entry::new(distances[child], ChildId::new(index, child).0), base);
+                stack.insert(StackEntry::new(distances[child], ChildId::new(index, child).0), base);
             }
         }
     }

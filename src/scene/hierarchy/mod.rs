@@ -1,5 +1,31 @@
 //! The bounding volume hierarchies (BVHs) over triangles: one per engine, built on first use.
 
+/// Calls a function with the proof of an instruction set: that of the level if it is AVX-512, AVX2 or NEON, else what every
+/// processor has. SSE4.2 is not worth a fourth copy of the traversal.
+macro_rules! dispatch {
+    ($level:expr, $simd:ident => $traversal:expr) => {
+        match $level {
+            #[cfg(target_arch = "x86_64")]
+            Level::Avx512($simd) => $simd.vectorize(
+                #[inline(always)]
+                || $traversal,
+            ),
+            #[cfg(target_arch = "x86_64")]
+            Level::Avx2($simd) => $simd.vectorize(
+                #[inline(always)]
+                || $traversal,
+            ),
+            _ => {
+                let $simd = super::baseline();
+                $simd.vectorize(
+                    #[inline(always)]
+                    || $traversal,
+                )
+            }
+        }
+    };
+}
+
 mod binary;
 mod compressed;
 mod instances;
@@ -12,19 +38,31 @@ mod wide;
 
 use std::sync::OnceLock;
 
+use fearless_simd::{Level, Simd};
 use glam::Vec3A;
 use obvhs::aabb::Aabb;
 use obvhs::cwbvh::CwBvh;
 use obvhs::cwbvh::node::CwBvhNode;
 
-pub(in crate::scene) use instances::{Bottom, Placement};
-pub(in crate::scene) use interval::EntryPoints;
-pub(in crate::scene) use packet::PacketHits;
+pub use instances::{Bottom, Placement};
+pub use interval::EntryPoints;
+pub use packet::PacketHits;
 pub use packet::{OCTANTS, PACKET, Packet, ray_octant};
 use tree::{BoxedTree, Tree};
-pub(in crate::scene) use wide::Wide;
+pub use wide::Wide;
 
 use super::loading::{Cancelled, Loading};
+
+/// The instructions that every processor has.
+fn baseline() -> impl Simd {
+    #[cfg(target_arch = "x86_64")]
+    let baseline = Level::baseline().as_sse2();
+    #[cfg(target_arch = "aarch64")]
+    let baseline = Level::baseline().as_neon();
+    #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+    let baseline = Some(fearless_simd::Fallback::new());
+    baseline.expect("each has them")
+}
 
 /// Margin of every box, in units of the bounding radius (about 16 roundings of a coordinate of 1). It keeps rounding in a
 /// ray's test against a box from losing a triangle in it.
@@ -68,7 +106,7 @@ impl Compressed {
 impl Hierarchy {
     /// Builds the hierarchy over `count` triangles. Also returns the order in which they are to be stored. Corners are in
     /// units of the bounding radius.
-    pub(super) fn new(
+    pub fn new(
         count: usize,
         corners: impl Fn(u32) -> [[f32; 3]; 3] + Sync,
         loading: &Loading,
@@ -86,7 +124,7 @@ impl Hierarchy {
     }
 
     /// Memory in bytes of the hierarchies built so far.
-    pub(super) fn bytes(&self) -> usize {
+    pub fn bytes(&self) -> usize {
         self.tree.as_ref().map_or(0, Tree::bytes)
             + self.wide.get().map_or(0, Wide::bytes)
             + self.compressed.get().map_or(0, |built| {
@@ -95,7 +133,7 @@ impl Hierarchy {
     }
 
     /// The CPU's hierarchy; `corners` are those of the triangles as stored.
-    pub(super) fn wide(&self, corners: impl Fn(u32) -> [[f32; 3]; 3] + Sync) -> &Wide {
+    pub fn wide(&self, corners: impl Fn(u32) -> [[f32; 3]; 3] + Sync) -> &Wide {
         self.wide.get_or_init(|| {
             self.built(|tree| Wide::new(tree, PART_MAX, &corners), |wide| wide.depth)
                 .unwrap_or_default()
@@ -103,7 +141,7 @@ impl Hierarchy {
     }
 
     /// The GPU's hierarchy; `corners` are those of the triangles as stored.
-    pub(super) fn compressed(&self, corners: impl Fn(u32) -> [[f32; 3]; 3] + Sync) -> &Compressed {
+    pub fn compressed(&self, corners: impl Fn(u32) -> [[f32; 3]; 3] + Sync) -> &Compressed {
         self.compressed.get_or_init(|| {
             let built: CwBvh = self
                 .built(
@@ -134,7 +172,7 @@ impl Hierarchy {
 }
 
 /// A box as a triangle with the same box, to build hierarchies over boxes.
-pub(in crate::scene) fn triangle_of_box([low, high]: [[f32; 3]; 2]) -> [[f32; 3]; 3] {
+pub fn triangle_of_box([low, high]: [[f32; 3]; 2]) -> [[f32; 3]; 3] {
     [low, high, high]
 }
 

@@ -6,7 +6,7 @@
 
 use fearless_simd::{ExtractToken, Simd, SimdBase, SimdMask, f32x8, f32x16, mask32x16};
 
-use super::traverse::{BoxRay, Entry, HitSink, INVERSE_MAX, RELATIVE_ERROR, SingleRay, TriangleRay};
+use super::traverse::{BoxRay, HitSink, INVERSE_MAX, RELATIVE_ERROR, SingleRay, StackEntry, TriangleRay};
 use super::wide::{Block, Node, Normals, WIDTH, Wide};
 use crate::optics::real::inlined;
 use crate::scene::Hit;
@@ -77,9 +77,9 @@ impl Packet {
 /// Closest hits of a packet's rays, or any hits.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
-pub(in crate::scene) struct PacketHits {
+pub struct PacketHits {
     /// Distance of each hit, or the ray's t_max.
-    pub(super) t: [f32; PACKET],
+    pub t: [f32; PACKET],
     /// Triangle index plus one; 0 without a hit.
     marks: [u32; PACKET],
     /// Twice the signed areas into which the ray divides the projected triangle, each opposite to a corner. Not set for any
@@ -165,7 +165,7 @@ pub fn ray_octant(direction: [f32; 3]) -> usize {
 pub const OCTANTS: usize = 24;
 
 inlined! {
-    pub(super) fn load<S: Simd>(simd: S, lanes: &[f32; PACKET]) -> f32x16<S> {
+    pub fn load<S: Simd>(simd: S, lanes: &[f32; PACKET]) -> f32x16<S> {
         f32x16::load_array_ref(simd, lanes)
     }
 
@@ -174,7 +174,7 @@ inlined! {
     }
 
     /// The octant of all rays; `None` if they differ.
-    pub(super) fn common_octant<S: Simd>(simd: S, packet: &Packet) -> Option<usize> {
+    pub fn common_octant<S: Simd>(simd: S, packet: &Packet) -> Option<usize> {
         let octant = ray_octant(packet.direction(0));
         let zero = f32x16::splat(simd, 0.0);
         let directions = load_three(simd, &packet.directions);
@@ -203,7 +203,7 @@ inlined! {
 }
 
 /// Result of a packet against a box.
-pub(super) struct BoxHits<S: Simd> {
+pub struct BoxHits<S: Simd> {
     /// Rays that overlap the box within [0, t_max].
     pub mask: mask32x16<S>,
     /// Entry distances, at least 0.
@@ -211,7 +211,7 @@ pub(super) struct BoxHits<S: Simd> {
 }
 
 /// A packet's rays prepared for the tests against boxes and triangles; fields as in [`BoxRay`] and [`TriangleRay`].
-pub(super) struct PacketRays<S: Simd> {
+pub struct PacketRays<S: Simd> {
     pub origin: [f32x16<S>; 3],
     direction: [f32x16<S>; 3],
     pub inverse: [f32x16<S>; 3],
@@ -225,7 +225,7 @@ pub(super) struct PacketRays<S: Simd> {
 
 impl<S: Simd> PacketRays<S> {
     inlined! {
-        pub(super) fn new(simd: S, packet: &Packet, wide: &Wide, octant: usize) -> Self {
+        pub fn new(simd: S, packet: &Packet, wide: &Wide, octant: usize) -> Self {
             let axes = [[1, 2, 0], [0, 2, 1], [0, 1, 2]][octant >> 3];
             let [axis_x, axis_y, along] = axes;
             let direction = load_three(simd, &packet.directions);
@@ -262,7 +262,7 @@ impl<S: Simd> PacketRays<S> {
         }
 
         /// Tests the rays against a child's box; `None` if none hits.
-        pub(super) fn intersect_box(&self, node: &Node, child: usize, t_max: &[f32; PACKET]) -> Option<BoxHits<S>> {
+        pub fn intersect_box(&self, node: &Node, child: usize, t_max: &[f32; PACKET]) -> Option<BoxHits<S>> {
             let limits = load(self.origin[0].token(), t_max);
             let simd = limits.token();
             let (x, y, z) = (
@@ -295,7 +295,7 @@ impl<S: Simd> PacketRays<S> {
 
     /// Continues below a child with the rays that hit its box, one by one. Returns true if any hit is replaced.
     #[inline(always)]
-    pub(super) fn traverse_singly<const ANY: bool>(
+    pub fn traverse_singly<const ANY: bool>(
         &self,
         wide: &Wide,
         child: u32,
@@ -314,7 +314,7 @@ impl<S: Simd> PacketRays<S> {
                 is_closer: false,
             };
             self.single(lane)
-                .traverse::<ANY, _>(wide, Entry::new(distances[lane], child), &mut sink);
+                .traverse::<ANY, _>(wide, StackEntry::new(distances[lane], child), &mut sink);
             is_closer |= sink.is_closer;
         }
         is_closer
@@ -345,7 +345,7 @@ impl<S: Simd> PacketRays<S> {
 
     /// Tests the triangles of a block one by one against all rays, and records closer hits. Returns true if there are any.
     #[inline(always)]
-    pub(super) fn intersect_block<const ANY: bool>(
+    pub fn intersect_block<const ANY: bool>(
         &self,
         wide: &Wide,
         block: usize,

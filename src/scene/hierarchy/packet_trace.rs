@@ -1,7 +1,7 @@
 //! Packets through the CPU's hierarchy. The interval of all rays tests a node's eight boxes first, so that rays through empty
 //! space end at once.
 
-use fearless_simd::{Level, Simd, SimdMask, dispatch};
+use fearless_simd::{Level, Simd, SimdMask};
 
 use super::interval::{ChildId, EntryPoints, RayInterval};
 use super::packet::{PACKET, Packet, PacketHits, PacketRays, common_octant, load};
@@ -13,21 +13,17 @@ use super::wide::{BLOCK, Wide};
 const SINGLE_MAX: u32 = 4;
 
 impl Wide {
-    /// Updates each ray with its closest hit with 0 < t, if that is nearer than its current one. Traversal starts from
-    /// `entry_points`, or from the root. Returns false, and changes nothing, if the rays are not all in one octant.
-    pub fn closest_hits(
+    /// Updates each ray with its closest hit with 0 < t, if that is nearer than its current one; with any hit if it has none
+    /// yet, if `ANY`. Traversal starts from `entry_points`, or from the root. Returns false, and changes nothing, if the rays
+    /// are not all in one octant.
+    pub fn hits<const ANY: bool>(
         &self,
         level: Level,
         packet: &Packet,
         entry_points: Option<&EntryPoints>,
         hits: &mut PacketHits,
     ) -> bool {
-        dispatch!(level, simd => trace::<_, false>(simd, self, packet, entry_points, hits))
-    }
-
-    /// The same for any hit of each ray that has none yet.
-    pub fn any_hits(&self, level: Level, packet: &Packet, hits: &mut PacketHits) -> bool {
-        dispatch!(level, simd => trace::<_, true>(simd, self, packet, None, hits))
+        dispatch!(level, simd => trace::<_, ANY>(simd, self, packet, entry_points, hits))
     }
 }
 

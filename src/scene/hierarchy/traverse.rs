@@ -9,7 +9,7 @@
 
 use std::mem::MaybeUninit;
 
-use fearless_simd::{ExtractToken, Level, Simd, SimdBase, SimdMask, dispatch, f32x8, mask32x8};
+use fearless_simd::{ExtractToken, Level, Simd, SimdBase, SimdMask, f32x8, mask32x8};
 use glam::Vec3A;
 
 use super::DEPTH_MAX;
@@ -19,23 +19,18 @@ use crate::scene::intersect::{Hit, RayFrame};
 
 /// Relative error bound of a box's or a triangle's position from the ray's origin: eleven roundings, five of a box's plane
 /// and six of a triangle's projected corner. So a distant camera loses nothing.
-pub(super) const RELATIVE_ERROR: f32 = 7e-7;
+pub const RELATIVE_ERROR: f32 = 7e-7;
 
 /// Bound of inverse directions. It keeps their products with distances finite.
-pub(super) const INVERSE_MAX: f32 = 1e18;
+pub const INVERSE_MAX: f32 = 1e18;
 
 /// Each level adds at most all but one of a node's children.
 const STACK_SIZE: usize = DEPTH_MAX * WIDTH;
 
 impl Wide {
-    /// The closest hit with 0 < t < `t_max`.
-    pub fn closest_hit(&self, level: Level, frame: &RayFrame, t_max: f32) -> Option<Hit> {
-        dispatch!(level, simd => trace::<_, false>(simd, self, frame, t_max))
-    }
-
-    /// Any hit with 0 < t < `t_max`.
-    pub fn any_hit(&self, level: Level, frame: &RayFrame, t_max: f32) -> Option<Hit> {
-        dispatch!(level, simd => trace::<_, true>(simd, self, frame, t_max))
+    /// The closest hit with 0 < t < `t_max`, or any hit if `ANY`.
+    pub fn hit<const ANY: bool>(&self, level: Level, frame: &RayFrame, t_max: f32) -> Option<Hit> {
+        dispatch!(level, simd => trace::<_, ANY>(simd, self, frame, t_max))
     }
 }
 
@@ -50,12 +45,12 @@ fn trace<S: Simd, const ANY: bool>(simd: S, wide: &Wide, frame: &RayFrame, t_max
         leaves: TriangleRay::new(simd, frame),
     };
     let mut closest = ClosestHit::before(t_max);
-    ray.traverse::<ANY, _>(wide, Entry::ROOT, &mut closest);
+    ray.traverse::<ANY, _>(wide, StackEntry::ROOT, &mut closest);
     closest.hit()
 }
 
 /// Receiver of a ray's hits.
-pub(super) trait HitSink {
+pub trait HitSink {
     /// Distance beyond which hits are ignored.
     fn t_max(&self) -> f32;
 
@@ -64,7 +59,7 @@ pub(super) trait HitSink {
 }
 
 /// Keeps the closest hit. At equal distance the lowest index wins, so that the order of traversal does not matter.
-pub(super) struct ClosestHit {
+pub struct ClosestHit {
     t: f32,
     triangle: Option<u32>,
     /// See [`BlockHits::areas`].
@@ -100,14 +95,14 @@ impl HitSink for ClosestHit {
 }
 
 /// A ray's test against the contents of a leaf.
-pub(super) trait Leaves {
+pub trait Leaves {
     /// Tests a block whose box is entered at distance `entered`. Returns true if anything in it is hit. If `ANY`, the first
     /// hit is enough.
     fn intersect<const ANY: bool, M: HitSink>(&self, wide: &Wide, block: usize, entered: f32, sink: &mut M) -> bool;
 }
 
 /// A ray prepared for single-ray traversal.
-pub(super) struct SingleRay<S: Simd, L = TriangleRay<S>> {
+pub struct SingleRay<S: Simd, L = TriangleRay<S>> {
     pub boxes: BoxRay<S>,
     pub leaves: L,
 }
@@ -116,7 +111,7 @@ impl<S: Simd, L: Leaves> SingleRay<S, L> {
     /// Traverses the subtree of `child` and reports ever closer hits to `sink`; stops after the first hit if `ANY`. Returns
     /// true if so stopped.
     #[inline(always)]
-    pub fn traverse<const ANY: bool, M: HitSink>(&self, wide: &Wide, child: Entry, sink: &mut M) -> bool {
+    pub fn traverse<const ANY: bool, M: HitSink>(&self, wide: &Wide, child: StackEntry, sink: &mut M) -> bool {
         let mut stack = Stack::new();
         let mut next = child;
         loop {
@@ -167,7 +162,7 @@ fn splat<S: Simd>(simd: S, v: Vec3A) -> [f32x8<S>; 3] {
 }
 
 /// A ray prepared for tests against boxes.
-pub(super) struct BoxRay<S: Simd> {
+pub struct BoxRay<S: Simd> {
     pub inverse: [f32x8<S>; 3],
     /// Added to a near side's coordinate times the inverse direction: gives its distance, rounded down.
     pub near_offset: [f32x8<S>; 3],
@@ -202,7 +197,7 @@ impl<S: Simd> BoxRay<S> {
         }
 
         /// The nearest child whose box is hit before `t_max`. Pushes the other hit children, the nearest last.
-        fn intersect_children(&self, wide: &Wide, index: u32, t_max: f32, stack: &mut Stack) -> Option<Entry> {
+        fn intersect_children(&self, wide: &Wide, index: u32, t_max: f32, stack: &mut Stack) -> Option<StackEntry> {
             let node = &wide.nodes[index as usize];
             let simd = self.inverse[0].token();
             let (x, y, z) = (self.near(node, 0), self.near(node, 1), self.near(node, 2));
@@ -286,23 +281,23 @@ struct Children {
 
 impl Children {
     /// Takes the next child and prefetches it, because memory latency dominates traversal.
-    fn take(&mut self, wide: &Wide, node: &Node) -> Entry {
+    fn take(&mut self, wide: &Wide, node: &Node) -> StackEntry {
         let child = (self.children.trailing_zeros() % WIDTH as u32) as usize;
         self.children &= self.children - 1;
         wide.prefetch(node.children[child]);
-        Entry::new(self.near[child], node.children[child])
+        StackEntry::new(self.near[child], node.children[child])
     }
 }
 
 /// Triangles of a block that a ray's line passes through.
-pub(super) struct Inside<S: Simd> {
+pub struct Inside<S: Simd> {
     mask: mask32x8<S>,
     /// See [`BlockHits::areas`].
     areas: [f32x8<S>; 3],
 }
 
 /// Hits of a ray in a block.
-pub(super) struct BlockHits<S: Simd> {
+pub struct BlockHits<S: Simd> {
     /// Bit mask of the hit triangles.
     hit_bits: u32,
     /// Distances.
@@ -335,7 +330,7 @@ impl<S: Simd> BlockHits<S> {
 }
 
 /// A ray prepared for tests against triangles: the shear of [`RayFrame`].
-pub(super) struct TriangleRay<S: Simd> {
+pub struct TriangleRay<S: Simd> {
     pub origin: [f32x8<S>; 3],
     pub direction: [f32x8<S>; 3],
     pub axes: [usize; 3],
@@ -420,9 +415,9 @@ impl<S: Simd> TriangleRay<S> {
 
 /// A child to visit, ordered by the distance of its box. The distance is not negative, so that its bits sort as integers.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) struct Entry(u64);
+pub struct StackEntry(u64);
 
-impl Entry {
+impl StackEntry {
     pub const ROOT: Self = Self(0);
 
     pub fn new(distance: f32, child: u32) -> Self {
@@ -439,8 +434,8 @@ impl Entry {
 }
 
 /// The traversal stack. Left uninitialised, because filling it would cost more than many a ray.
-pub(super) struct Stack {
-    entries: [MaybeUninit<Entry>; STACK_SIZE],
+pub struct Stack {
+    entries: [MaybeUninit<StackEntry>; STACK_SIZE],
     /// Number of entries.
     pub height: usize,
 }
@@ -453,19 +448,19 @@ impl Stack {
         }
     }
 
-    pub fn push(&mut self, entry: Entry) {
+    pub fn push(&mut self, entry: StackEntry) {
         self.entries[self.height].write(entry);
         self.height += 1;
     }
 
-    pub fn pop(&mut self) -> Option<Entry> {
+    pub fn pop(&mut self) -> Option<StackEntry> {
         self.height = self.height.checked_sub(1)?;
         // SAFETY: everything below the height that was has been written by `push` or `insert`.
         Some(unsafe { self.entries[self.height].assume_init() })
     }
 
     /// Pops the next entry that is no farther than `t_max`.
-    pub fn pop_before(&mut self, t_max: f32) -> Option<Entry> {
+    pub fn pop_before(&mut self, t_max: f32) -> Option<StackEntry> {
         loop {
             let entry = self.pop()?;
             if entry.distance() <= t_max {
@@ -475,7 +470,7 @@ impl Stack {
     }
 
     /// Inserts an entry below the nearer entries from `base` on.
-    pub fn insert(&mut self, entry: Entry, base: usize) {
+    pub fn insert(&mut self, entry: StackEntry, base: usize) {
         let mut at = self.height;
         self.height += 1;
         while at > base {

@@ -9,14 +9,14 @@ use crate::parallel;
 /// A binary tree with a triangle per leaf, from left to right. It takes four bytes per triangle: boxes are recomputed from
 /// the triangles for each hierarchy.
 #[derive(Clone, Debug, Default)]
-pub(in crate::scene) struct Tree {
+pub struct Tree {
     /// Leaves in each inner node's left subtree. Order: parents before children, left before right.
-    pub(super) left_leaves: Vec<u32>,
+    pub left_leaves: Vec<u32>,
 }
 
 /// A node with its subtree.
 #[derive(Clone, Copy, Debug, Default)]
-pub(in crate::scene) struct Subtree {
+pub struct Subtree {
     /// Index among the inner nodes; meaningless for a leaf.
     inner: u32,
     /// First leaf.
@@ -94,11 +94,11 @@ impl Tree {
 }
 
 /// A subtree with the boxes of its nodes.
-pub(in crate::scene) struct BoxedTree<'a> {
+pub struct BoxedTree<'a> {
     pub tree: &'a Tree,
     pub root: Subtree,
     /// Inner nodes, parents before children.
-    inner: Vec<Subtree>,
+    pub inner: Vec<Subtree>,
     /// Boxes of the inner nodes.
     inner_boxes: Vec<Aabb>,
     /// Boxes of the leaves.
@@ -132,16 +132,6 @@ impl<'a> BoxedTree<'a> {
             boxed.inner_boxes[index] = left.union(&right);
         }
         Self { inner, ..boxed }
-    }
-
-    /// The inner nodes, children before parents.
-    pub fn children_first(&self) -> impl Iterator<Item = Subtree> {
-        self.inner.iter().rev().copied()
-    }
-
-    /// Number of inner nodes.
-    pub fn inner_count(&self) -> usize {
-        self.inner.len()
     }
 
     /// Index of an inner node within the subtree.

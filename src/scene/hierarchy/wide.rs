@@ -10,10 +10,10 @@ use crate::scene::intersect::triangle_normal;
 use crate::scene::memory::{in_large_pages, prefetch, room_in_large_pages};
 
 /// Children per node, and triangles per leaf at most.
-pub(super) const WIDTH: usize = 8;
+pub const WIDTH: usize = 8;
 
 /// Flag of a child that is a block of triangles; the other bits are its index.
-pub(super) const BLOCK: u32 = 1 << 31;
+pub const BLOCK: u32 = 1 << 31;
 
 /// Cost of a block's test relative to a node's.
 const BLOCK_COST: f32 = 1.0;
@@ -25,7 +25,7 @@ const TRIANGLES_A_BLOCK: usize = 4;
 /// A node of eight children. Unused children have boxes that no ray hits; they refer to the first block, which is harmless.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
-pub(in crate::scene) struct Node {
+pub struct Node {
     /// Sides of the children's boxes: `[axis][low, high][child]`.
     pub sides: [[[f32; WIDTH]; 2]; 3],
     /// Indices of nodes, or of blocks if [`BLOCK`] is set.
@@ -52,20 +52,20 @@ impl Node {
 /// Corners of up to eight triangles: `[corner][axis][triangle]`. Missing triangles are NaN, which no ray hits.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
-pub(in crate::scene) struct Block {
+pub struct Block {
     pub corners: [[[f32; WIDTH]; 3]; 3],
 }
 
 /// Normals of a block's triangles: `[axis][triangle]`. Apart from the corners, because few rays need them.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
-pub(in crate::scene) struct Normals {
+pub struct Normals {
     pub axes: [[f32; WIDTH]; 3],
 }
 
 /// The CPU's hierarchy; empty without triangles.
 #[derive(Clone, Debug, Default)]
-pub(in crate::scene) struct Wide {
+pub struct Wide {
     pub nodes: Vec<Node>,
     pub blocks: Vec<Block>,
     pub normals: Vec<Normals>,
@@ -151,8 +151,8 @@ impl Cut {
 
 /// The best cut of each inner node, bottom up.
 fn cuts(tree: &BoxedTree<'_>) -> Vec<Cut> {
-    let mut cuts = vec![Cut::default(); tree.inner_count()];
-    for node in tree.children_first() {
+    let mut cuts = vec![Cut::default(); tree.inner.len()];
+    for &node in tree.inner.iter().rev() {
         let [left, right] = tree.tree.sides(node);
         // The cheapest number of left children out of `children`, with its cost.
         let best = |children: usize| {

@@ -16,9 +16,7 @@ use bytemuck::{Pod, Zeroable};
 use super::{geometry::Geometry, part::Vertex, triangle_normal};
 use crate::optics::frame::frame_from_tangent;
 use crate::optics::layer::fuzz::FUZZ_ROUGHNESS_MIN;
-use crate::optics::material::{
-    MATCHED_NODES, Material, NO_TEXTURE, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY,
-};
+use crate::optics::material::{MATCHED_NODES, Material, NO_TEXTURE, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY};
 use crate::optics::numeric::normalize_or;
 use crate::optics::prelude::*;
 use crate::optics::table::table_lookup;
@@ -27,8 +25,7 @@ use crate::optics::target::TextureTarget as On;
 pub use crate::optics::target::{TextureTarget, TextureValues};
 pub use mean::{TextureMean, texture_mean};
 pub use pack::{Pack, Pictures, SlotTextures, Textures, UserTextureFile, WORDS_MAX, slots_with_coordinates};
-pub use user::{TextureChannel, TextureProjection, TextureSpace, UserTexture};
-pub use uses::TextureAssignment;
+pub use user::{SHIPPED, TextureChannel, TextureProjection, TextureSpace, UserTexture, UserTextures};
 
 pub const WRAP_REPEAT: u32 = 0;
 pub const WRAP_MIRRORED: u32 = 1;

@@ -5,11 +5,12 @@ use std::sync::Arc;
 
 use super::mean::{TextureMean, texture_mean};
 use super::scale::{fraction, halved};
-use super::user::UserTexture;
-use super::uses::{SlotUses, TextureAssignment, Use, of_slot, of_user_texture};
+use super::user::{UserTexture, UserTextures};
+use super::uses::{SlotUses, Use, flag, of_slot, of_user_texture};
 use super::{CHANNEL_SHIFT, IS_BOX, IS_FINE, IS_SRGB, TextureRecord};
+use crate::named::with_defaults;
 use crate::optics::material::{NO_TEXTURE, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY};
-use crate::optics::target::{TextureTarget, TextureValues};
+use crate::optics::target::{TARGETS, TextureTarget, TextureValues};
 use crate::optics::tone::linear_from_srgb;
 use crate::optics::vector::{Vec3, vec3};
 use crate::scene::model::{AlphaMode, Model, Slot, Texture};
@@ -52,33 +53,22 @@ pub struct Textures {
     pub user_textures: Vec<UserTextureFile>,
 }
 
-/// Textures of a slot.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SlotTextures {
-    /// Indices into [`Textures::records`] by target, or [`NO_TEXTURE`]. A map of one value is a constant instead.
-    records: [u32; TextureTarget::ALL.len()],
-    /// Values of maps of one value, by target: linear RGB, or a number in all three.
-    constants: [Option<[f32; 3]>; TextureTarget::ALL.len()],
-    /// Opacity cutoff of a masked material; negative for blended opacity.
-    pub alpha_cutoff: f32,
-    /// The emission texture's mean, linear.
-    pub mean_emission: [f32; 3],
-    /// Parameters that vertex colours multiply, as material flags.
-    pub vertex_flags: u32,
-    /// Whether each target uses box projection.
-    pub on_box: [bool; TextureTarget::ALL.len()],
-}
-
-impl Default for SlotTextures {
-    fn default() -> Self {
-        Self {
-            records: [NO_TEXTURE; TextureTarget::ALL.len()],
-            constants: [None; TextureTarget::ALL.len()],
-            alpha_cutoff: -1.0,
-            mean_emission: [1.0; 3],
-            vertex_flags: 0,
-            on_box: [false; TextureTarget::ALL.len()],
-        }
+with_defaults! {
+    /// Textures of a slot.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct SlotTextures {
+        /// Indices into [`Textures::records`] by target, or [`NO_TEXTURE`]. A map of one value is a constant instead.
+        pub records: [u32; TARGETS] = [NO_TEXTURE; TARGETS],
+        /// Values of maps of one value, by target: linear RGB, or a number in all three.
+        pub constants: [Option<[f32; 3]>; TARGETS],
+        /// Opacity cutoff of a masked material; negative for blended opacity.
+        pub alpha_cutoff: f32 = -1.0,
+        /// The emission texture's mean, linear.
+        pub mean_emission: [f32; 3] = [1.0; 3],
+        /// Parameters that vertex colours multiply, as material flags.
+        pub vertex_flags: u32,
+        /// Whether each target uses box projection.
+        pub on_box: [bool; TARGETS],
     }
 }
 
@@ -107,7 +97,6 @@ impl SlotTextures {
 fn vertex_flags(slot: &Slot) -> u32 {
     let of_color = if slot.is_unlit { VERTEX_EMISSION } else { VERTEX_BASE };
     let is_clear = slot.has_vertex_alpha && slot.alpha_mode != AlphaMode::Opaque;
-    let flag = |is_on: bool, flag: u32| if is_on { flag } else { 0 };
     flag(slot.has_vertex_colors, of_color) | flag(is_clear, VERTEX_OPACITY)
 }
 
@@ -141,21 +130,21 @@ fn variant(is_fine: bool, is_flipped: bool) -> usize {
 }
 
 impl Pack {
-    /// Packs the maps that a model's slots and the user's assignments need. If that is too much for a GPU, the largest maps
+    /// Packs the maps that a model's slots and the user's own for them need. If that is too much for a GPU, the largest maps
     /// are halved, with a warning.
-    pub fn new(model: &Model, assigned: &[TextureAssignment], pictures: Pictures<'_>) -> Self {
+    pub fn new(model: &Model, assigned: &[UserTextures], pictures: Pictures<'_>) -> Self {
         Self::within(model, assigned, pictures, WORDS_MAX)
     }
 
-    fn within(model: &Model, assigned: &[TextureAssignment], read: Pictures<'_>, words_max: usize) -> Self {
+    fn within(model: &Model, assigned: &[UserTextures], read: Pictures<'_>, words_max: usize) -> Self {
         let mut warnings = Vec::new();
         let mut user_textures: Vec<UserTextureFile> = Vec::new();
         let mut count = model.textures.len();
-        for TextureAssignment { target, texture, .. } in assigned {
-            if user_textures.iter().any(|user| user.is_of(texture, *target)) {
+        for (target, texture) in assigned.iter().flat_map(UserTextures::iter) {
+            if user_textures.iter().any(|user| user.is_of(texture, target)) {
                 continue;
             }
-            let (file, is_srgb) = (texture.file.clone(), texture.is_srgb(*target));
+            let (file, is_srgb) = (texture.file.clone(), texture.is_srgb(target));
             let picture = read(&file, is_srgb);
             if let Err(why) = &picture {
                 warnings.push(format!(
@@ -212,26 +201,22 @@ impl Pack {
     }
 
     /// Texture uses per slot. A user's map replaces the model's, even if unreadable.
-    fn uses(&self, model: &Model, assigned: &[TextureAssignment]) -> Vec<SlotUses> {
+    fn uses(&self, model: &Model, assigned: &[UserTextures]) -> Vec<SlotUses> {
         let is_translucent = |picture: usize| self.pictures[picture].is_translucent;
         let mut uses: Vec<SlotUses> = model.slots.iter().map(|slot| of_slot(slot, is_translucent)).collect();
-        for assignment in assigned {
-            let picture = self
-                .user_textures
-                .iter()
-                .find(|user| user.is_of(&assignment.texture, assignment.target))
-                .and_then(|user| user.index);
-            let has_coordinates = self.has_coordinates.get(assignment.slot) == Some(&true);
-            if let Some(slot) = uses.get_mut(assignment.slot) {
-                slot[assignment.target as usize] = picture
-                    .map(|picture| of_user_texture(assignment, picture, is_translucent(picture), has_coordinates));
+        for ((uses, textures), has_coordinates) in uses.iter_mut().zip(assigned).zip(&self.has_coordinates) {
+            for (target, texture) in textures.iter() {
+                let user = self.user_textures.iter().find(|user| user.is_of(texture, target));
+                uses[target as usize] = user.and_then(|user| user.index).map(|picture| {
+                    of_user_texture(target, texture, picture, is_translucent(picture), *has_coordinates)
+                });
             }
         }
         uses
     }
 
     /// Texture data for the same users' maps with any mapping.
-    pub fn textures(&self, model: &Model, assigned: &[TextureAssignment]) -> Textures {
+    pub fn textures(&self, model: &Model, assigned: &[UserTextures]) -> Textures {
         let mut textures = Textures {
             records: Vec::new(),
             words: self.words.clone(),
@@ -264,7 +249,7 @@ impl Pack {
         let is_vector = used.target.values() == TextureValues::Vector;
         let value = picture.one_value(used).filter(|_| !is_vector);
         let index = used.target as usize;
-        slot.on_box[index] = value.is_none() && used.flags & IS_BOX != 0;
+        slot.on_box[index] = value.is_none() && used.record.flags & IS_BOX != 0;
         slot.constants[index] = value.map(Vec3::to_f32);
         if value.is_none() {
             slot.records[index] = textures.add(picture.record(used));
@@ -288,7 +273,7 @@ impl Packed {
     }
 
     fn is_fine_for(&self, used: &Use) -> bool {
-        self.is_fine && used.flags & IS_SRGB == 0
+        self.is_fine && used.record.flags & IS_SRGB == 0
     }
 
     /// Appends the texels for a use, unless they are there.
@@ -317,23 +302,19 @@ impl Packed {
 
     fn record(&self, used: &Use) -> TextureRecord {
         let is_fine = self.is_fine_for(used);
-        let [uu, uv, u1, vu, vv, v1] = used.picture_from_uv;
         let [width, height] = self.size;
         TextureRecord {
-            u_from_uv: [uu, uv, u1],
             first_texel: self.first_texels[variant(is_fine, used.is_flipped)].unwrap_or_default(),
-            v_from_uv: [vu, vv, v1],
             width,
             height,
-            flags: used.flags | if is_fine { IS_FINE } else { 0 },
-            scale: used.scale,
-            offset: used.offset,
+            flags: used.record.flags | flag(is_fine, IS_FINE),
+            ..used.record
         }
     }
 
     /// Uniform value of a use, if any: linear RGB, or a scalar in all three.
     fn one_value(&self, used: &Use) -> Option<Vec3<f64>> {
-        let is_srgb = used.flags & IS_SRGB != 0;
+        let is_srgb = used.record.flags & IS_SRGB != 0;
         let channel = |channel: usize| {
             let code = self.channels[channel]?;
             let is_code = is_srgb && channel < 3;
@@ -343,7 +324,7 @@ impl Packed {
                 code
             })
         };
-        let counts = match (used.flags >> CHANNEL_SHIFT) & 7 {
+        let counts = match (used.record.flags >> CHANNEL_SHIFT) & 7 {
             0 => match used.target.values() {
                 TextureValues::Number(channel) => Some(channel),
                 TextureValues::Color | TextureValues::Vector => None,
@@ -354,19 +335,19 @@ impl Packed {
             Some(one) => Vec3::splat(channel(one)?),
             None => vec3(channel(0)?, channel(1)?, channel(2)?),
         };
-        Some(value * f64::from(used.scale) + Vec3::splat(f64::from(used.offset)))
+        Some(value * f64::from(used.record.scale) + Vec3::splat(f64::from(used.record.offset)))
     }
 
     /// Mean value of a use, linear.
     fn mean(&self, used: &Use) -> [f32; 3] {
         self.mean.map_or([1.0; 3], |mean| {
             let [r, g, b, _] = mean.codes;
-            let found = if used.flags & IS_SRGB != 0 {
+            let found = if used.record.flags & IS_SRGB != 0 {
                 mean.linear
             } else {
                 [r, g, b]
             };
-            found.map(|x| x * used.scale + used.offset)
+            found.map(|x| x * used.record.scale + used.record.offset)
         })
     }
 }
@@ -448,7 +429,7 @@ fn fitting(
     let is_used = |index: usize| uses.iter().any(|used| used.picture == index);
     let is_color = |index: usize| {
         let mut of_it = uses.iter().filter(|used| used.picture == index);
-        of_it.any(|used| used.flags & IS_SRGB != 0)
+        of_it.any(|used| used.record.flags & IS_SRGB != 0)
     };
     // A uniform map needs one texel.
     let used = |(index, picture): (usize, &&Texture)| {

@@ -9,7 +9,7 @@ use tempfile::TempDir;
 
 use super::report::EngineReport;
 use super::scene::Scene;
-use super::{Done, GOAL, Place, REFERENCE_SHARE, Run, default_scene, turns};
+use super::{Done, GOAL, Place, REFERENCE_SHARE, Run, default_scene, opened, turns};
 use crate::analysis::error::{colors, relative_mean_squared_error};
 use crate::document::{Denoise, Document};
 use crate::gpu::Traversal;
@@ -31,7 +31,7 @@ const WARM: usize = 0;
 const PATIENCE: f64 = 4.0;
 
 /// A scene with its reference.
-pub(super) struct Goal {
+pub struct Goal {
     name: String,
     document: Document,
     reference: Vec<f32>,
@@ -40,7 +40,7 @@ pub(super) struct Goal {
 }
 
 /// Renders the references on the CPU engine.
-pub(super) fn references(run: &mut Run<'_, '_>, folder: &TempDir) -> Result<Vec<Goal>, StudyError> {
+pub fn references(run: &mut Run<'_, '_>, folder: &TempDir) -> Result<Vec<Goal>, StudyError> {
     let size = run.extent.goal_size;
     let chosen =
         Scene::all().filter(|scene| MATERIALS.contains(&scene.material) && scene.mesh == "60k" && !scene.ground);
@@ -77,8 +77,8 @@ pub(super) fn references(run: &mut Run<'_, '_>, folder: &TempDir) -> Result<Vec<
 }
 
 /// Measures the times of all scenes with a reference.
-pub(super) fn goals(run: &mut Run<'_, '_>, place: &Place, report: &mut EngineReport, end: Instant) -> Done {
-    let mut session = place.open(Traversal::Own)?;
+pub fn goals(run: &mut Run<'_, '_>, place: &Place, report: &mut EngineReport, end: Instant) -> Done {
+    let mut session = opened(place, Traversal::Own)?;
     session.keep_guides("for the benchmark");
     let mut denoiser = Denoiser::open();
     let mut times = vec![[const { Vec::new() }; 2]; run.goals.len()];

@@ -17,7 +17,7 @@ use tempfile::TempDir;
 
 use super::{Steps, StudyError, Watch};
 use crate::document::Document;
-use crate::gpu::{GpuAdapter, GpuError, Traversal};
+use crate::gpu::{AdapterKind, GpuAdapter, GpuError, Traversal};
 use crate::render::denoise::Library;
 use crate::render::{EngineChoice, Session, cpu_name};
 use goal::Goal;
@@ -77,19 +77,14 @@ fn turns(end: Instant, last: usize, scenes: usize) -> impl Iterator<Item = (usiz
     (0..=last).flat_map(move |turn| (0..scenes).map(move |scene| (turn, scene)).take_while(is_due))
 }
 
-/// An engine to measure.
-enum Place {
-    Cpu,
-    Adapter(Box<GpuAdapter>),
-}
+/// An engine to measure: an adapter's, or the CPU's.
+type Place = Option<GpuAdapter>;
 
-impl Place {
-    fn open(&self, traversal: Traversal) -> Result<Session, StudyError> {
-        Ok(match self {
-            Self::Cpu => Session::open(EngineChoice::Cpu)?,
-            Self::Adapter(adapter) => Session::on_adapter(adapter, traversal)?,
-        })
-    }
+fn opened(place: &Place, traversal: Traversal) -> Result<Session, StudyError> {
+    Ok(match place {
+        None => Session::open(EngineChoice::Cpu)?,
+        Some(adapter) => Session::on_adapter(adapter, traversal)?,
+    })
 }
 
 /// A document with its name.
@@ -179,15 +174,13 @@ fn default_scene(size: u32) -> Document {
 }
 
 fn places(engine: EngineChoice) -> Vec<Place> {
-    let cpu = (engine != EngineChoice::Gpu).then_some(Place::Cpu);
+    let cpu = (engine != EngineChoice::Gpu).then_some(None);
     let adapters = if engine == EngineChoice::Cpu {
         Vec::new()
     } else {
-        GpuAdapter::all()
+        GpuAdapter::of_kind(AdapterKind::Any)
     };
-    cpu.into_iter()
-        .chain(adapters.into_iter().map(|adapter| Place::Adapter(Box::new(adapter))))
-        .collect()
+    cpu.into_iter().chain(adapters.into_iter().map(Some)).collect()
 }
 
 impl Run<'_, '_> {
@@ -217,8 +210,8 @@ impl Run<'_, '_> {
 
 fn described(place: &Place) -> EngineReport {
     let [engine, adapter, backend, driver] = match place {
-        Place::Cpu => ["cpu".to_owned(), cpu_name(), String::new(), String::new()],
-        Place::Adapter(adapter) => {
+        None => ["cpu".to_owned(), cpu_name(), String::new(), String::new()],
+        Some(adapter) => {
             let backend = adapter.info.backend.to_string();
             ["gpu".to_owned(), adapter.info.name.clone(), backend, adapter.driver()]
         }
@@ -228,7 +221,7 @@ fn described(place: &Place) -> EngineReport {
         adapter,
         backend,
         driver,
-        is_software: !matches!(place, Place::Adapter(adapter) if !adapter.is_software()),
+        is_software: place.as_ref().is_none_or(GpuAdapter::is_software),
         rows: Vec::new(),
         left_out: Vec::new(),
     }

@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use super::report::EngineReport;
-use super::{Case, Done, Place, Run, turns};
+use super::{Case, Done, Place, Run, opened, turns};
 use crate::gpu::Traversal;
 use crate::render::Session;
 use crate::study::{StudyError, UNLIMITED};
@@ -16,12 +16,12 @@ const RATES: [(&str, &str); 3] = [
 ];
 
 /// Measures the rates of all scenes.
-pub(super) fn rates(run: &mut Run<'_, '_>, place: &Place, report: &mut EngineReport, end: Instant) -> Done {
-    let mut sessions = vec![(0, place.open(Traversal::Own)?)];
+pub fn rates(run: &mut Run<'_, '_>, place: &Place, report: &mut EngineReport, end: Instant) -> Done {
+    let mut sessions = vec![(0, opened(place, Traversal::Own)?)];
     match place {
-        Place::Adapter(adapter) if adapter.has_ray_queries() => sessions.push((2, place.open(Traversal::RayQueries)?)),
-        Place::Adapter(_) => report.leave_out("ray queries", "", "the adapter has none"),
-        Place::Cpu => {}
+        Some(adapter) if adapter.has_ray_queries() => sessions.push((2, opened(place, Traversal::RayQueries)?)),
+        Some(_) => report.leave_out("ray queries", "", "the adapter has none"),
+        None => {}
     }
     let mut found = vec![[const { Vec::new() }; 3]; run.cases.len()];
     for (turn, number) in turns(end, run.extent.turns, found.len()) {

@@ -9,7 +9,7 @@ use crate::scene::mesh::Mesh;
 
 /// A file in the making.
 #[derive(Default)]
-pub(super) struct Glb {
+pub struct Glb {
     bytes: Vec<u8>,
     views: Vec<Value>,
     accessors: Vec<Value>,
@@ -19,14 +19,14 @@ pub(super) struct Glb {
 
 impl Glb {
     /// A file with one mesh at one node.
-    pub(super) fn of(mesh: &Mesh, node: Value) -> Self {
+    pub fn of(mesh: &Mesh, node: Value) -> Self {
         let mut glb = Self::default();
         let index = glb.mesh(mesh);
         glb.node(index, node);
         glb
     }
 
-    pub(super) fn mesh(&mut self, mesh: &Mesh) -> usize {
+    pub fn mesh(&mut self, mesh: &Mesh) -> usize {
         let positions: Vec<[f32; 3]> = mesh.positions.iter().map(|p| p.as_vec3().to_array()).collect();
         let end =
             |pick: fn(f32, f32) -> f32| [0, 1, 2].map(|i| positions.iter().map(|p| p[i]).fold(positions[0][i], pick));
@@ -45,18 +45,18 @@ impl Glb {
         self.meshes.len() - 1
     }
 
-    pub(super) fn tangents(&mut self, mesh: usize, tangents: &[Vec4]) {
+    pub fn tangents(&mut self, mesh: usize, tangents: &[Vec4]) {
         let accessor = self.accessor(tangents, json!({"componentType": 5126, "type": "VEC4"}));
         self.meshes[mesh]["primitives"][0]["attributes"]["TANGENT"] = json!(accessor);
     }
 
     /// Adds a node of a mesh; `transform` has glTF's own `scale`, `translation` and so on.
-    pub(super) fn node(&mut self, mesh: usize, mut transform: Value) {
+    pub fn node(&mut self, mesh: usize, mut transform: Value) {
         transform["mesh"] = json!(mesh);
         self.nodes.push(transform);
     }
 
-    pub(super) fn write(self, stage: &Stage, name: &str) -> Result<ModelSource, StudyError> {
+    pub fn write(self, stage: &Stage, name: &str) -> Result<ModelSource, StudyError> {
         let roots: Vec<usize> = (0..self.nodes.len()).collect();
         let document = json!({
             "asset": {"version": "2.0"},

@@ -120,7 +120,7 @@ cases! {
             };
             document.lighting.area_lights = vec![sun];
             let film = stage.film(&document)?;
-            let Some(job) = stage.session().job() else {
+            let Some(job) = stage.session.job() else {
                 return Ok(f64::INFINITY);
             };
             let ((side, front), (up, level)) = (60_f64.to_radians().sin_cos(), 20_f64.to_radians().sin_cos());
@@ -198,7 +198,7 @@ fn background_error(stage: &mut Stage, document: &Document, environment: &Enviro
         ..document.clone()
     };
     let film = stage.film(&document)?;
-    let Some(settings) = stage.session().job().map(|job| job.settings.clone()) else {
+    let Some(settings) = stage.session.job().map(|job| job.settings.clone()) else {
         return Ok(f64::INFINITY);
     };
     let mut worst = 0.0_f64;

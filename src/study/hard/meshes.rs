@@ -5,7 +5,7 @@ use glam::{DVec3, Vec4};
 use crate::scene::mesh::{Mesh, plane_normal};
 use crate::scene::{Model, shapes};
 
-pub(super) fn model(mesh: Mesh) -> Model {
+pub fn model(mesh: Mesh) -> Model {
     Model {
         mesh,
         ..Model::default()
@@ -13,7 +13,7 @@ pub(super) fn model(mesh: Mesh) -> Model {
 }
 
 /// A square of two triangles with flat normals, facing one way or the other.
-pub(super) fn add_square(mesh: &mut Mesh, mut corners: [DVec3; 4], is_turned: bool) {
+pub fn add_square(mesh: &mut Mesh, mut corners: [DVec3; 4], is_turned: bool) {
     if is_turned {
         corners.reverse();
     }
@@ -24,7 +24,7 @@ pub(super) fn add_square(mesh: &mut Mesh, mut corners: [DVec3; 4], is_turned: bo
 }
 
 /// A cube from −half to half, each face in `cells` × `cells` squares.
-pub(super) fn cube(half: DVec3, cells: u32) -> Mesh {
+pub fn cube(half: DVec3, cells: u32) -> Mesh {
     let mut mesh = Mesh::default();
     let axes = [DVec3::X, DVec3::Y, DVec3::Z];
     for axis in 0..3 {
@@ -41,7 +41,7 @@ pub(super) fn cube(half: DVec3, cells: u32) -> Mesh {
     mesh
 }
 
-pub(super) fn needle() -> Mesh {
+pub fn needle() -> Mesh {
     let mut mesh = cube(DVec3::new(1.0, 1e-5, 1e-5), 1);
     let turn = glam::DQuat::from_euler(glam::EulerRot::XYZ, 0.3, 0.7, 0.5);
     mesh.positions.iter_mut().for_each(|place| *place = turn * *place);
@@ -49,7 +49,7 @@ pub(super) fn needle() -> Mesh {
 }
 
 /// A ball of radius 1e-6.
-pub(super) fn small_ball() -> Mesh {
+pub fn small_ball() -> Mesh {
     let mut mesh = shapes::sphere(24, 12);
     for place in &mut mesh.positions {
         *place = *place * 1e-6 + DVec3::new(0.4, 0.3, 0.2);
@@ -58,7 +58,7 @@ pub(super) fn small_ball() -> Mesh {
 }
 
 /// Triangles along spirals, each smaller than the one before by a factor.
-pub(super) fn spirals() -> Mesh {
+pub fn spirals() -> Mesh {
     let mut mesh = Mesh::default();
     for spiral in 0..40 {
         let turn = glam::DQuat::from_euler(

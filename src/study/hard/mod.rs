@@ -5,7 +5,7 @@
 /// the value; see [`HardCase`].
 macro_rules! cases {
     ($group:literal $($name:literal $danger:literal $made:literal $must:literal $naive:literal, $measure:literal $limit:expr, $find:expr;)*) => {
-        pub(super) const CASES: &[$crate::study::hard::HardCase] = &[$($crate::study::hard::HardCase {
+        pub const CASES: &[$crate::study::hard::HardCase] = &[$($crate::study::hard::HardCase {
             name: $name,
             group: $group,
             danger: $danger,

@@ -12,23 +12,23 @@ use crate::scene::{Geometry, Hit, shapes};
 
 impl Stage {
     /// Number of rays to test for leaks.
-    pub(super) fn rays(&self) -> u32 {
+    pub fn rays(&self) -> u32 {
         if self.thorough { 1_000_000 } else { 100_000 }
     }
 }
 
 /// A number in [0, 1) from bits.
-pub(super) fn unit(bits: u32) -> f32 {
+pub fn unit(bits: u32) -> f32 {
     (bits >> 8) as f32 / 16_777_216.0
 }
 
 /// The i-th of many directions.
-pub(super) fn direction(i: u32) -> Vec3 {
+pub fn direction(i: u32) -> Vec3 {
     let (a, b) = (hash_bits(i), hash_bits(i ^ 0x9e37_79b9));
     Vec3::from_array(crate::optics::warp::uniform_sphere([unit(a), unit(b)]).to_f32()).normalize()
 }
 
-pub(super) fn ray(origin: Vec3, direction: Vec3) -> RayQuestion {
+pub fn ray(origin: Vec3, direction: Vec3) -> RayQuestion {
     RayQuestion {
         origin: origin.to_array(),
         direction: direction.to_array(),
@@ -37,7 +37,7 @@ pub(super) fn ray(origin: Vec3, direction: Vec3) -> RayQuestion {
 }
 
 /// A vertex, or a place on an edge, of a triangle.
-pub(super) fn edge_aim(geometry: &Geometry, i: u32) -> Vec3 {
+pub fn edge_aim(geometry: &Geometry, i: u32) -> Vec3 {
     let triangle = hash_bits(i ^ 0x1234) as usize % geometry.triangle_count();
     let corners = geometry.corners(triangle).map(Vec3::from_array);
     match i % 3 {
@@ -48,7 +48,7 @@ pub(super) fn edge_aim(geometry: &Geometry, i: u32) -> Vec3 {
 }
 
 /// Number of rays that miss, or miss before `t_max`.
-pub(super) fn leaks(stage: &Stage, geometry: &Geometry, rays: &[RayQuestion], t_max: f32) -> Result<f64, StudyError> {
+pub fn leaks(stage: &Stage, geometry: &Geometry, rays: &[RayQuestion], t_max: f32) -> Result<f64, StudyError> {
     let answers = trace(stage, geometry, rays)?;
     let is_lost = |answer: &&RayAnswer| answer.triangle == NO_HIT || answer.t.is_nan() || answer.t > t_max;
     Ok(answers.iter().filter(is_lost).count() as f64)
@@ -63,7 +63,7 @@ fn trace(stage: &Stage, geometry: &Geometry, rays: &[RayQuestion]) -> Result<Vec
 }
 
 /// Rays from grid points of a cube along axes and in planes: number of wrong exits.
-pub(super) fn axis_rays(stage: &Stage) -> Result<f64, StudyError> {
+pub fn axis_rays(stage: &Stage) -> Result<f64, StudyError> {
     let geometry = Geometry::build(&model(cube(DVec3::ONE, 8)), false);
     let wall = (1.0 / geometry.world_units_per_unit) as f32;
     let mut rays = Vec::new();
@@ -98,7 +98,7 @@ pub(super) fn axis_rays(stage: &Stage) -> Result<f64, StudyError> {
 }
 
 /// Rays that leave a convex mesh outwards and inwards: number of wrong hits and misses.
-pub(super) fn leaving_rays(stage: &Stage) -> Result<f64, StudyError> {
+pub fn leaving_rays(stage: &Stage) -> Result<f64, StudyError> {
     let mut wrong = 0.0;
     for radius in [1.0, 1e-3] {
         let mut mesh = shapes::sphere(48, 24);

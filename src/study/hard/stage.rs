@@ -25,11 +25,11 @@ pub struct Stage {
     /// Single functions of the engine.
     pub prober: Prober,
     choice: EngineChoice,
-    session: Session,
+    pub session: Session,
     folder: TempDir,
     /// The last rendered image.
-    pub(super) picture: Option<Image>,
-    pub(super) stop: Arc<AtomicBool>,
+    pub picture: Option<Image>,
+    pub stop: Arc<AtomicBool>,
 }
 
 impl Stage {
@@ -50,7 +50,7 @@ impl Stage {
         })
     }
 
-    pub(super) fn check_stop(&self) -> Result<(), StudyError> {
+    pub fn check_stop(&self) -> Result<(), StudyError> {
         match self.stop.load(Ordering::Relaxed) {
             true => Err(StudyError::Stopped),
             false => Ok(()),
@@ -61,13 +61,8 @@ impl Stage {
         self.session.engine()
     }
 
-    /// The session, for details beyond the film.
-    pub(super) fn session(&mut self) -> &mut Session {
-        &mut self.session
-    }
-
     /// Renders a document to its end.
-    pub(super) fn film(&mut self, document: &Document) -> Result<Film, StudyError> {
+    pub fn film(&mut self, document: &Document) -> Result<Film, StudyError> {
         let mut document = document.clone();
         if self.choice == EngineChoice::Gpu {
             // One kernel for all renders: compiling one each would take longer than rendering.
@@ -85,14 +80,14 @@ impl Stage {
     }
 
     /// Writes a file for a case.
-    pub(super) fn write(&self, name: &str, bytes: &[u8]) -> Result<PathBuf, StudyError> {
+    pub fn write(&self, name: &str, bytes: &[u8]) -> Result<PathBuf, StudyError> {
         let path = self.folder.path().join(name);
         fs::write(&path, bytes)?;
         Ok(path)
     }
 
     /// A latitude-longitude map of linear radiances, written as .exr in f32 and to be read again.
-    pub(super) fn environment(
+    pub fn environment(
         &self,
         name: &str,
         [width, height]: [u32; 2],
@@ -113,17 +108,17 @@ impl Stage {
     }
 
     /// The map of a source, loaded as the engines load it.
-    pub(super) fn load_environment(&self, source: &EnvironmentSource) -> Result<Environment, StudyError> {
+    pub fn load_environment(&self, source: &EnvironmentSource) -> Result<Environment, StudyError> {
         Ok(environment::load(source).map_err(|error| SessionError::Asset(error.into()))?)
     }
 }
 
 /// How far the worst pixel is from what all pixels should be, relative to it, and how many samples were dropped.
-pub(super) fn worst_pixel(film: &Film, color: [f32; 3]) -> f64 {
+pub fn worst_pixel(film: &Film, color: [f32; 3]) -> f64 {
     let off = |pixel: &[f32; 4]| [0, 1, 2].map(|i| f64::from((pixel[i] / color[i] - 1.0).abs()));
     film.image().pixels.iter().flat_map(off).fold(0.0, f64::max) + film.dropped() as f64
 }
 
-pub(super) fn mean_luminance(film: &Film) -> f64 {
+pub fn mean_luminance(film: &Film) -> f64 {
     film.luminance().iter().sum::<f64>() / film.pixel_count() as f64
 }

@@ -94,7 +94,7 @@ fn many_samples(stage: &mut Stage) -> Result<f64, StudyError> {
     // Every ray misses; fewer bounces allow longer passes on software Vulkan.
     document.render.bounces = 1;
     let found = stage.film(&document)?;
-    let Some(job) = stage.session().job().cloned() else {
+    let Some(job) = stage.session.job().cloned() else {
         return Ok(f64::INFINITY);
     };
     let settings = &job.settings;

@@ -119,7 +119,7 @@ pub static SCENE: LazyLock<Scene> = LazyLock::new(|| {
                 for target in [
                     &[On::Coat, On::CoatColor, On::Film][..],
                     On::OF_FUZZ,
-                    &[On::FilmThickness],
+                    &[On::FilmThickness, On::Specular, On::Transmission],
                 ]
                 .concat()
                 {
@@ -453,7 +453,7 @@ impl Bench {
             pass.dispatch_workgroups(count.div_ceil(64) as u32, 1, 1);
         }
         self.gpu.queue.submit([encoder.finish()]);
-        self.gpu.read(&output, count * width).unwrap()
+        self.gpu.read(&output, 0..count * width).unwrap()
     }
 }
 

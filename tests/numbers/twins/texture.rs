@@ -1,6 +1,6 @@
 //! Textures: every wrap mode, filter and set of coordinates, and what they do to a material.
 
-use glossmith::optics::material::Material;
+use glossmith::optics::material::{FIELDS, Field, Material};
 use glossmith::optics::real::Scalar;
 use glossmith::optics::vector::Vec3;
 use glossmith::scene::texture::{
@@ -68,12 +68,25 @@ fn textures_agree() {
     check(&["scene/texture"], &[lookup, wrap]);
 }
 
+/// What textures of every target change, and what follows from it.
+fn varied() -> impl Iterator<Item = &'static Field> {
+    let of_targets = TextureTarget::ALL.iter().flat_map(|target| target.fields());
+    let names: Vec<_> = of_targets
+        .chain(&["roughness", "transmission_roughness", "reflecting_ior"])
+        .collect();
+    FIELDS.iter().filter(move |field| names.contains(&&field.name))
+}
+
 #[test]
 fn textured_materials_agree() {
+    let with_output = |case: Case, field: &Field| {
+        let kind = if field.size == 4 { SHARE } else { COLOUR };
+        case.output(format!("m.{}", field.name), kind)
+    };
     check(
         &["scene/texture"],
         &[
-            Case::new(
+            varied().fold(Case::new(
                 "textured_material",
                 "material u v second_u second_v box_u box_v",
                 "let uvs = Uvs(vec4f(u, v, second_u, second_v), vec2f(box_u, box_v)); \
@@ -82,26 +95,16 @@ fn textured_materials_agree() {
                     let material: Material<T> = SCENE.material(row.bits());
                     let tint = Vec3::from_f32([0.5, 0.75, 0.25]);
                     let m = textured_material(&SCENE.textures, &SCENE.tables, &material, &T::each(|_| uvs(row)), tint);
-                    row.put_vector(m.base_color);
-                    row.put_vector(m.transmission_tint);
-                    row.put_vector(m.emission);
-                    row.put_numbers([m.metalness, m.roughness, m.transmission_roughness, m.coat_weight]);
-                    row.put_numbers([m.reflecting_ior, m.ggx_roughness]);
-                    row.put(m.film_weight);
-                    row.put_vector(m.film_path);
+                    let bytes = m.cast::<f32>();
+                    let number = |place: usize| {
+                        let number = bytemuck::bytes_of(&bytes)[place..place + 4].try_into();
+                        T::from_f64(f64::from(f32::from_ne_bytes(number.unwrap())))
+                    };
+                    for field in varied() {
+                        (0..field.size / 4).for_each(|i| row.put(number(field.offset + 4 * i)));
+                    }
                 }),
-            )
-            .output("m.base_color", COLOUR)
-            .output("m.transmission_tint", COLOUR)
-            .output("m.emission", COLOUR)
-            .output("m.metalness", SHARE)
-            .output("m.roughness", SHARE)
-            .output("m.transmission_roughness", SHARE)
-            .output("m.coat_weight", SHARE)
-            .output("m.reflecting_ior", SHARE)
-            .output("m.ggx_roughness", SHARE)
-            .output("m.film_weight", SHARE)
-            .output("m.film_path", COLOUR)
+            ), with_output)
             .group("", |rng, _| {
                 let material = any_material(rng);
                 with_uvs(rng, material)

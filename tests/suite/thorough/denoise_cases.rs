@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use glossmith::analysis::halves::Halves;
 use glossmith::document::turntable::{Turn, turned};
-use glossmith::document::{Background, Denoise, Document, assign};
+use glossmith::document::{Background, Denoise, Document};
 use glossmith::job::film::Image;
 use glossmith::render::StepDenoiser;
 use glossmith::render::denoise::{Denoiser, Library, Noisy};
@@ -12,9 +12,9 @@ use glossmith::render::worker::{Pace, Worker};
 use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::ModelSource;
 
-use super::renders::render;
+use super::renders::{render, set};
 
-fn sphere_on_ground(assignments: &[&str]) -> Document {
+fn sphere_on_ground(assignments: &str) -> Document {
     let mut document = Document {
         model: ModelSource::Sphere,
         ground: true,
@@ -22,26 +22,19 @@ fn sphere_on_ground(assignments: &[&str]) -> Document {
     };
     (document.render.width, document.render.height) = (64, 64);
     document.view.denoise = Denoise::High;
-    for assignment in assignments {
-        assign(&mut document.materials[0], assignment).unwrap();
-    }
+    set(&mut document.materials[0], assignments);
     document
 }
 
-const GLASS: [&str; 4] = [
-    "specular.lobe=ggx",
-    "specular.roughness=0.3",
-    "base.metalness=0",
-    "transmission.weight=1",
-];
+const GLASS: &str = "specular.lobe=ggx specular.roughness=0.3 base.metalness=0 transmission.weight=1";
 
 /// A mirror, rough glass, and a lens wide open: nearer to the truth than the samples, and the error that is told is the true
 /// one within a factor of two (one render each; its band is 20 to 60 % wide).
 #[test]
 fn mirrors_glass_and_blur_come_out_nearer_to_the_truth() {
-    let mirror = sphere_on_ground(&["specular.roughness=0", "specular.lobe=ggx", "base.metalness=1"]);
-    let glass = sphere_on_ground(&GLASS);
-    let mut blurred = sphere_on_ground(&["base.metalness=0"]);
+    let mirror = sphere_on_ground("specular.roughness=0 specular.lobe=ggx base.metalness=1");
+    let glass = sphere_on_ground(GLASS);
+    let mut blurred = sphere_on_ground("base.metalness=0");
     blurred.camera.aperture = 0.2;
     let mut denoiser = Denoiser::open().unwrap_or_else(|error| panic!("{error}"));
     for (name, mut document) in [("mirror", mirror), ("glass", glass), ("blurred", blurred)] {
@@ -77,7 +70,7 @@ fn apart(a: &Image, b: &Image) -> f64 {
 #[test]
 fn what_stands_still_in_a_turntable_does_not_boil() {
     let mut session = Session::open(EngineChoice::Cpu).unwrap();
-    let mut document = sphere_on_ground(&["specular.lobe=ggx", "specular.roughness=0.5", "base.metalness=0"]);
+    let mut document = sphere_on_ground("specular.lobe=ggx specular.roughness=0.5 base.metalness=0");
     document.render.samples = 4;
     let frames = [0, 1, 2].map(|frame| {
         let document = turned(&document, Turn::Model, frame, 36, [0.0; 3]);
@@ -98,7 +91,7 @@ fn what_stands_still_in_a_turntable_does_not_boil() {
 #[test]
 fn a_worker_that_is_dropped_does_not_wait_for_the_denoiser() {
     let _ = Library::get().unwrap_or_else(|error| panic!("{error}"));
-    let mut document = sphere_on_ground(&[]);
+    let mut document = sphere_on_ground("");
     (document.render.width, document.render.height, document.render.samples) = (1024, 1024, 1);
     document.view.denoise = Denoise::High;
     let worker = Worker::spawn(EngineChoice::Cpu, || {}).unwrap();
@@ -116,7 +109,7 @@ fn a_worker_that_is_dropped_does_not_wait_for_the_denoiser() {
 /// Where something is seen through holes of a transparent picture, opacities stay within bounds and the holes empty.
 #[test]
 fn holes_of_transparent_pictures_stay_holes() {
-    let mut document = sphere_on_ground(&["geometry.opacity=0.5"]);
+    let mut document = sphere_on_ground("geometry.opacity=0.5");
     document.ground = false;
     document.lighting.background = Background::Transparent;
     document.render.samples = 8;

@@ -1,83 +1,17 @@
 //! Tutorials of the book: each command is run by the program. A page that names what is not there any more fails.
 
-use std::collections::BTreeSet;
 use std::path::Path;
 
 use glossmith::document::Denoise;
-use glossmith::render::shown::Shown;
 use serde_json::Value;
 
 use super::cli_support::{Workplace, write_hdr};
-use super::docs::{pages, text_of};
+use super::docs::text_of;
 use super::docs_commands::{arguments, commands};
 use super::gltf_builder::{glb, square};
 
 fn tutorial(name: &str) -> String {
     text_of(&Path::new("docs/tutorials").join(name))
-}
-
-/// The names of the window that a page gives in italics, such as *File › Export…*, in their parts.
-fn names(page: &str) -> BTreeSet<String> {
-    let text: String = page.split("```").step_by(2).collect();
-    let text: String = text.replace("**", "").split('`').step_by(2).collect();
-    let italic = text.split('*').skip(1).step_by(2);
-    italic
-        .flat_map(|name| name.split(" › "))
-        .map(|name| name.replace('\n', " "))
-        .collect()
-}
-
-/// The texts of the program's sources.
-fn literals(folder: &Path, found: &mut String) {
-    for entry in std::fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        if path.is_dir() {
-            literals(&path, found);
-        } else if path.extension().is_some_and(|ending| ending == "rs") {
-            found.push_str(&std::fs::read_to_string(path).unwrap());
-        }
-    }
-}
-
-/// What tutorials and how-to pages call by an italic name is called so in the window: as a label, a choice or an entry.
-#[test]
-fn names_of_the_window_that_the_pages_give_exist() {
-    let root = Path::new(crate::ROOT);
-    let mut sources = String::new();
-    for folder in [
-        "src/app",
-        "src/document",
-        "src/render",
-        "src/optics",
-        "src/scene/environment",
-        "src/store",
-        "src/study",
-    ] {
-        literals(&root.join(folder), &mut sources);
-    }
-    let presets: BTreeSet<_> = glossmith::store::PRESETS
-        .iter()
-        .map(|preset| preset.name.clone())
-        .collect();
-    let mut count = 0;
-    for page in pages() {
-        let path = page.display().to_string().replace('\\', "/");
-        if !["docs/tutorials/", "docs/how-to/", "docs/reference/window.md"]
-            .iter()
-            .any(|start| path.starts_with(start))
-        {
-            continue;
-        }
-        for name in names(&text_of(&page)) {
-            let is_literal = ["\"", " {", " ({"]
-                .iter()
-                .any(|end| sources.contains(&format!("\"{name}{end}")));
-            let is_there = is_literal || presets.contains(&name);
-            assert!(is_there, "{path} names *{name}*, which the window does not have");
-            count += 1;
-        }
-    }
-    assert!(count > 60, "{count} names");
 }
 
 #[test]
@@ -186,13 +120,4 @@ fn automate_it() {
     place.write("page.toml", batch.as_bytes());
     let run = place.done("batch page.toml --pictures 1-1");
     assert!(run.stdout.contains("rendered"), "{}", run.stdout);
-}
-
-/// What the viewport can show is what the tutorial lists.
-#[test]
-fn the_display_menu_has_what_the_pages_list() {
-    let page = text_of(Path::new("docs/reference/window.md"));
-    for (_, label, _) in Shown::ALL.iter().filter(|(shown, ..)| *shown != Shown::Picture) {
-        assert!(page.contains(label), "docs/reference/window.md lacks {label}");
-    }
 }

@@ -10,12 +10,14 @@ use crate::document::{Bookmark, range};
 
 /// Camera, view and render settings.
 #[derive(Default)]
-pub struct CameraPanel;
+pub struct CameraPanel {
+    sensor_mm: Option<f64>,
+}
 
 impl Panel for CameraPanel {
     fn show(&mut self, ui: &mut Ui, desk: &mut Desk) {
         widgets::group(ui, "Camera", |ui| camera(ui, desk));
-        widgets::group(ui, "Lens", |ui| photographic::show(ui, desk));
+        widgets::group(ui, "Lens", |ui| photographic::show(ui, desk, &mut self.sensor_mm));
         widgets::group(ui, "Bookmarks", |ui| bookmarks(ui, desk));
         widgets::group(ui, "View", |ui| view(ui, desk));
         widgets::group(ui, "Image", |ui| picture(ui, desk));

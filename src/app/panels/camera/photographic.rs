@@ -1,10 +1,17 @@
-//! The camera in a photographer's terms, beside the values that are kept: focal length, f-number, aspect.
+//! The camera in a photographer's terms, beside the values that are kept: focal length on a sensor, f-number, aspect.
 
 use super::*;
+use crate::document::CameraSettings;
 use crate::render::worker::Scene;
 
-/// Height of a full frame, millimetres.
-const SENSOR_HEIGHT_MM: f64 = 24.0;
+/// Sensors by their height in millimetres.
+const SENSORS: [(f64, &str, &str); 5] = [
+    (24.0, "Full frame", "36 × 24 mm"),
+    (15.6, "APS-C", "23.5 × 15.6 mm"),
+    (18.66, "Super 35", "24.89 × 18.66 mm"),
+    (13.0, "Four Thirds", "17.3 × 13 mm"),
+    (33.0, "Medium format", "44 × 33 mm"),
+];
 /// Millimetres in a metre.
 const MM_PER_M: f64 = 1000.0;
 /// Width to height of the images to choose from.
@@ -18,13 +25,21 @@ const ASPECTS: [([u32; 2], &str); 7] = [
     ([9, 16], "9 : 16"),
 ];
 
-pub fn show(ui: &mut Ui, desk: &mut Desk) {
-        let focal_mm = |fov_deg: f64| 0.5 * SENSOR_HEIGHT_MM / (0.5 * fov_deg).to_radians().tan();
-        let fov_deg = |focal_mm: f64| 2.0 * (0.5 * SENSOR_HEIGHT_MM / focal_mm).atan().to_degrees();
+/// `sensor_mm` is the height of the sensor that focal lengths refer to.
+pub fn show(ui: &mut Ui, desk: &mut Desk, sensor_mm: &mut Option<f64>) {
+    let first = SENSORS[0].0;
+    let height_mm = sensor_mm.get_or_insert(first);
+    let name = ["Sensor", "Sensor", "Sensor size for focal length only; doesn't change the image."];
+    widgets::value_row(ui, name, height_mm, first, |ui, height_mm| {
+        widgets::choice(ui, "sensor", height_mm, &SENSORS)
+    });
+    let height_mm = *height_mm;
+        let focal_mm = |fov_deg: f64| 0.5 * height_mm / (0.5 * fov_deg).to_radians().tan();
+        let fov_deg = |focal_mm: f64| 2.0 * (0.5 * height_mm / focal_mm).atan().to_degrees();
         let range = focal_mm(*range::FOV_DEG.end())..=focal_mm(*range::FOV_DEG.start());
         let present_mm = focal_mm(desk.document.camera.fov_deg);
         let style = NumberStyle::plain(range, " mm", 0.005 * present_mm, 1);
-        let help = "The field of view as a lens before a full frame (36 × 24 mm) has it.";
+        let help = "The field of view as a lens on the sensor has it.";
         let name = ["Focal length", "Focal length", help];
         desk.row(
             ui,
@@ -57,7 +72,7 @@ fn f_number(ui: &mut Ui, desk: &mut Desk, focal_mm: f64) {
     };
     let help = "Focal length over the lens's diameter, where a unit of the scene is as large as Light › Scene unit says: the smaller, the less is sharp. \
                 0 is a pinhole, with which everything is sharp.";
-    let blur = blur_px(scene);
+    let blur = blur_px(&desk.document.camera, scene);
     desk.row(
         ui,
         ["f-number", "f-number", help],
@@ -79,8 +94,7 @@ fn f_number(ui: &mut Ui, desk: &mut Desk, focal_mm: f64) {
 }
 
 /// How wide a point far behind what is sharp becomes in the image, pixels.
-fn blur_px(scene: &Scene) -> f64 {
-    let camera = &scene.document.camera;
+fn blur_px(camera: &CameraSettings, scene: &Scene) -> f64 {
     let (settings, height) = (&scene.job.settings.camera, f64::from(scene.document.render.height));
     let distance = (settings.focus_distance - settings.parallel_from).max(1e-9);
     camera.aperture / (0.5 * camera.fov_deg).to_radians().tan() / distance * height

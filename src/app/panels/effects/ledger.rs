@@ -47,7 +47,7 @@ pub fn show(ui: &mut Ui, found: &Ledger) {
     });
 }
 
-fn line(ui: &mut Ui, entry: &Entry) {
+fn line(ui: &mut Ui, entry: &LedgerEntry) {
     let help = format!(
         "{:.3} ms of {:.3} ms a sample of every pixel ({:.1} % of the frame); half of the turns lie between {:.3} and \
          {:.3} ms.\nNoise: {:+.0} %. Image: {:.3} % ({:.3} to {:.3}).",

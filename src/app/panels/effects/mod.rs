@@ -7,7 +7,7 @@ use ledger::LedgerState;
 use super::*;
 use crate::document::effect::{Effect, EffectSwitches, Switch};
 use crate::job::effect::Decision;
-use crate::study::ledger::Entry;
+use crate::study::ledger::LedgerEntry;
 
 /// Radius of the mark before an effect, points.
 const MARK_RADIUS: f32 = 3.5;
@@ -60,7 +60,7 @@ impl Panel for EffectsPanel {
 }
 
 /// An effect with what the ledger says of it.
-fn row(ui: &mut Ui, desk: &mut Desk, effect: &Effect, decision: &Decision, entry: Option<&Entry>) {
+fn row(ui: &mut Ui, desk: &mut Desk, effect: &Effect, decision: &Decision, entry: Option<&LedgerEntry>) {
     ui.horizontal(|ui| {
         mark(ui, decision.is_on);
         widgets::at_right(ui, |ui| {

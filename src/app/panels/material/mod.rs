@@ -12,6 +12,7 @@ use crate::app::services::selection::Thing;
 use crate::document::material::Conductor;
 use crate::document::{MaterialSettings, PARAMETERS, Parameter};
 use crate::optics::fresnel::Fresnel;
+use crate::optics::lobe::Lobe;
 use crate::store::PRESETS;
 
 /// Side of the ball before a slot's name, points.
@@ -248,6 +249,18 @@ fn name(ui: &mut Ui, desk: &mut Desk, material: &mut MaterialSettings) {
     });
 }
 
+/// The lobe, without those of older papers: *Measure* has all of them.
+fn lobe(ui: &mut Ui, parameter: &Parameter, material: &mut MaterialSettings) -> bool {
+    let older = [Lobe::GgxNdf, Lobe::Ggx2018, Lobe::BlinnPhong, Lobe::Lambert];
+    let mut choices = widgets::choices::<Lobe>();
+    choices.retain(|(lobe, ..)| *lobe == material.lobe || !older.contains(lobe));
+    let full = parameter.full_name();
+    let (name, default) = ([&*full, parameter.label, parameter.help], MaterialSettings::default().lobe);
+    widgets::value_row(ui, name, &mut material.lobe, default, |ui, lobe| {
+        widgets::choice(ui, &full, lobe, &choices)
+    })
+}
+
 /// The row of a parameter.
 fn show_parameter(ui: &mut Ui, desk: &mut Desk, parameter: &Parameter, material: &mut MaterialSettings) {
     let idle = (parameter.idle)(material);
@@ -262,7 +275,11 @@ fn show_parameter(ui: &mut Ui, desk: &mut Desk, parameter: &Parameter, material:
             pointed.set(response.contains_pointer());
         }
     };
+    let measures = desk.shared.viewing.measures;
     let row = ui.add_enabled_ui(idle.is_none(), |ui| {
+        if parameter.key == "specular.lobe" && !measures {
+            return lobe(ui, parameter, material);
+        }
         let beside = target.is_some().then_some(&mut slot as &mut dyn FnMut(&mut Ui));
         let preset = PRESETS.iter().find(|preset| preset.name == material.name);
         let default = preset.map_or_else(|| parameter.default_value(), |preset| parameter.get(preset));

@@ -8,7 +8,7 @@ const WIDTH: u32 = 1024;
 const HEIGHT: u32 = 512;
 
 /// A rectangular soft box with rounded corners, facing the origin, its sides level. Lengths in units of the object.
-pub(super) struct SoftBox {
+pub struct SoftBox {
     centre: [f64; 3],
     half_width: f64,
     half_height: f64,
@@ -22,7 +22,7 @@ pub(super) struct SoftBox {
 }
 
 /// A soft box, in its tables' columns: centre; half of its width and height; radiance, share at the corners and edge; tint.
-pub(super) const fn soft_box(
+pub const fn soft_box(
     centre: [f64; 3],
     [half_width, half_height]: [f64; 2],
     [radiance, corner_share, edge]: [f64; 3],
@@ -40,7 +40,7 @@ pub(super) const fn soft_box(
 }
 
 /// The map of a room, 1024 × 512: soft boxes before its walls, the last one in front.
-pub(super) fn room_with(
+pub fn room_with(
     name: &str,
     boxes: &[SoftBox],
     walls: impl Fn(Vec3<f64>) -> Vec3<f64> + Sync,
@@ -80,12 +80,12 @@ impl SoftBox {
 }
 
 /// `a` at t = 0, `b` at t = 1.
-pub(super) fn mix(a: f64, b: f64, t: f64) -> f64 {
+pub fn mix(a: f64, b: f64, t: f64) -> f64 {
     a + (b - a) * t
 }
 
 /// 0 up to `low`, 1 from `high`, smooth between.
-pub(super) fn smoothstep(low: f64, high: f64, x: f64) -> f64 {
+pub fn smoothstep(low: f64, high: f64, x: f64) -> f64 {
     let t = ((x - low) / (high - low)).clamp(0.0, 1.0);
     t * t * (3.0 - 2.0 * t)
 }

@@ -4,7 +4,7 @@ use super::artistic::{edge_color, edge_tint};
 use super::inputs::Inputs;
 use super::table;
 use crate::document::parameter;
-use crate::import::{FileParameter, widths_from_gltf};
+use crate::import::{FileParameter, USD_PREVIEW_SURFACE, widths_from_gltf};
 use crate::optics::fresnel::fresnel_f0;
 use crate::optics::layer::fuzz::fuzz_of_sheen;
 use crate::optics::lobe::anisotropy_from_ratio;
@@ -27,7 +27,7 @@ pub static SURFACES: &[SurfaceKind] = &[
     kind("open_pbr_surface", table::OPEN_PBR, open_pbr),
     kind("standard_surface", table::STANDARD_SURFACE, standard_surface),
     kind("gltf_pbr", table::GLTF_PBR, gltf_pbr),
-    kind("UsdPreviewSurface", table::USD_PREVIEW_SURFACE, usd_preview_surface),
+    kind("UsdPreviewSurface", USD_PREVIEW_SURFACE, usd_preview_surface),
     kind("disney_principled", table::DISNEY_PRINCIPLED, disney_principled),
     kind("surface_unlit", table::SURFACE_UNLIT, surface_unlit),
 ];

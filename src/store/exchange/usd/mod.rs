@@ -1,12 +1,12 @@
 //! USD as text: each material with a UsdPreviewSurface for any reader of USD, and MaterialX's OpenPBR for what reads that.
 
+#[cfg(feature = "usd")]
 mod stage;
 
 use std::collections::HashMap;
 use std::fmt::Write as _;
 use std::path::Path;
 
-use self::stage::{Prim, Stage};
 use super::materialx::{self, OPEN_PBR, as_open_pbr, written};
 use super::report::Entry;
 use super::surface::{Surface, Takes};
@@ -34,13 +34,21 @@ pub fn write(subject: &Subject, _path: &Path) -> Result<Written, ExchangeError> 
     Ok(Written::text(text, reports))
 }
 
+/// Says that the program was built without.
+#[cfg(not(feature = "usd"))]
+pub fn read(path: &Path, _options: ReadOptions) -> Result<Subject, ExchangeError> {
+    Err(ExchangeError::Unsuitable {
+        path: path.to_owned(),
+        reason: "this program was built without USD (the feature `usd`)".to_owned(),
+    })
+}
+
+#[cfg(feature = "usd")]
 pub fn read(path: &Path, options: ReadOptions) -> Result<Subject, ExchangeError> {
     let bytes = crate::store::file::read(path)?;
-    let text = String::from_utf8_lossy(&bytes);
     let (mut subject, mut refused) = (Subject::default(), Vec::new());
-    let stage = Stage::of(&text);
-    for material in stage.materials() {
-        match read_material(&stage, material, path, &options) {
+    for material in materials(path, bytes, &options)? {
+        match read_material(material, path, &options) {
             Ok(Some((material, losses))) => {
                 subject.materials.push(material);
                 subject.losses.push(losses);
@@ -63,23 +71,40 @@ pub fn read(path: &Path, options: ReadOptions) -> Result<Subject, ExchangeError>
     Ok(subject)
 }
 
-/// The exact parameters where they are there and show what the surface shows; else what that shows.
-fn read_material(
-    stage: &Stage<'_>,
-    material: &Prim<'_>,
-    path: &Path,
-    options: &ReadOptions,
-) -> Result<Option<(MaterialSettings, Vec<Entry>)>, ExchangeError> {
-    let exact = material.exact().filter(|_| !options.is_plain);
-    let Some((text, mut losses)) = stage.document(material) else {
-        return Ok(exact.or(material.exact()).map(|exact| (exact, Vec::new())));
+/// The exact parameters of a material, and a document of MaterialX with what that lacks.
+type Found = (Option<MaterialSettings>, Option<(String, Vec<Entry>)>);
+
+#[cfg(feature = "usd")]
+fn materials(path: &Path, bytes: Vec<u8>, options: &ReadOptions) -> Result<Vec<Found>, ExchangeError> {
+    let found = |stage: &_| {
+        let materials = stage::materials(stage).into_iter();
+        let read = materials.map(|material| (stage::exact(&material), stage::document(&material)));
+        read.collect()
     };
-    let wrong = |reason: String| ExchangeError::Contents {
+    let found = crate::import::usd::with_stage(path, bytes, &options.loading, found);
+    found.map_err(|reason| wrong(path, reason))
+}
+
+fn wrong(path: &Path, reason: String) -> ExchangeError {
+    ExchangeError::Contents {
         path: path.to_owned(),
         format: "USD",
         reason,
+    }
+}
+
+/// The exact parameters where they are there and show what the surface shows; else what that shows.
+#[cfg(feature = "usd")]
+fn read_material(
+    (exact, document): Found,
+    path: &Path,
+    options: &ReadOptions,
+) -> Result<Option<(MaterialSettings, Vec<Entry>)>, ExchangeError> {
+    let Some((text, mut losses)) = document else {
+        return Ok(exact.map(|exact| (exact, Vec::new())));
     };
-    let document = xml::parse(&text).map_err(wrong)?;
+    let exact = exact.filter(|_| !options.is_plain);
+    let document = xml::parse(&text).map_err(|reason| wrong(path, reason))?;
     let plain = ReadOptions {
         is_plain: true,
         ..options.clone()
@@ -91,12 +116,8 @@ fn read_material(
     };
     if let Some(exact) = exact {
         let written = write(&Subject::of(exact.clone()), path)?;
-        let text = String::from_utf8_lossy(&written.bytes);
-        let stage = Stage::of(&text);
-        let ours = stage
-            .materials()
-            .next()
-            .and_then(|ours| read_material(&stage, ours, path, &plain).ok()?);
+        let ours = materials(path, written.bytes, &plain)?.into_iter().next();
+        let ours = ours.and_then(|ours| read_material(ours, path, &plain).ok()?);
         if ours.is_some_and(|(ours, _)| materialx::is_near(&ours, &shown)) {
             return Ok(Some((exact, Vec::new())));
         }
@@ -112,27 +133,6 @@ fn quoted(text: &str) -> String {
         "\"{}\"",
         text.replace('\\', "\\\\").replace('"', "\\\"").replace('\n', "\\n")
     )
-}
-
-/// The text that begins here, in whichever of USD's quotation marks.
-fn unquoted(text: &str) -> Option<String> {
-    let marks = ["\"\"\"", "'''", "\"", "'"];
-    let mark = marks.into_iter().find(|mark| text.starts_with(mark))?;
-    let mut rest = &text[mark.len()..];
-    let mut inner = String::new();
-    while !rest.starts_with(mark) {
-        let mut letters = rest.chars();
-        match letters.next()? {
-            '\\' => inner.push(match letters.next()? {
-                'n' => '\n',
-                't' => '\t',
-                other => other,
-            }),
-            letter => inner.push(letter),
-        }
-        rest = letters.as_str();
-    }
-    Some(inner)
 }
 
 fn prim(surface: &Surface, name: &str, exact: &str) -> String {
