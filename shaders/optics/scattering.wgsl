@@ -51,7 +51,8 @@ fn scattered_again(
 
 fn facet_gain(head_on: vec3f, grazing: vec3f, kept: f32, cosine: f32) -> vec3f {
     let leaves = sqrt(kept);
-    let mean = mix(head_on, grazing, kept * leaves * (0.45 - 0.2 * cosine));
+    // A tint may be above 1.
+    let mean = min(mix(head_on, grazing, kept * leaves * (0.45 - 0.2 * cosine)), WHITE);
     return 1.0 + mean * leaves / (1.0 - mean * (1.0 - leaves)) * ((1.0 - kept) / kept);
 }
 

@@ -206,7 +206,7 @@ impl App {
                 selection: Selection::default(),
                 messages: Vec::new(),
                 pictures: Pictures::new(options.cache),
-                recent: Recent { paths: kept.recent },
+                recent: Recent::new(kept.recent),
                 import_lobe: kept.import_lobe,
                 rendering: Rendering {
                     engine,

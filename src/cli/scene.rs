@@ -31,7 +31,7 @@ pub struct SceneArguments {
     /// shown together), environments, materials. Options override what they say.
     #[arg(value_name = "FILE", value_parser = parse::name_of_file(parse::file))]
     files: Vec<PathBuf>,
-    /// What to render: a built-in model, a file (.glb, .gltf, .fbx, .obj, .ply, .stl, .zip), or a folder with one [default: teapot].
+    /// What to render: a built-in model, a file (.glb, .gltf, .usd, .usdz, .fbx, .obj, .ply, .stl, .zip), or a folder with one [default: teapot].
     #[arg(long, value_name = "FILE|teapot|sphere|plane|shaderball|still-life", value_parser = parse::name_of_file(parse::model))]
     model: Option<ModelSource>,
     /// Which scene of the model's file, counted from 0. Without it the file's default one.

@@ -81,24 +81,17 @@ impl CustomCurve {
         let segments = self.segments();
         let distance_max = f64::from(self.0[self.0.len() - 1][1]);
         let width = distance_max / CUSTOM_INTERVALS as f64;
-        let mut below = 0.0;
-        let density: Vec<f64> = (0..=CUSTOM_INTERVALS)
-            .map(|node| {
-                let share_of_width = if node == 0 || node == CUSTOM_INTERVALS {
-                    0.5
-                } else {
-                    1.0
-                };
-                let next = if node == CUSTOM_INTERVALS {
-                    1.0
-                } else {
-                    xi_at(&segments, (node as f64 + 0.5) * width)
-                };
-                let density = (next - below).max(0.0) / (share_of_width * width);
-                below = next;
-                density
-            })
-            .collect();
+        // ξ at the lower edge of a node's interval.
+        let edge = |node: usize| match node {
+            0 => 0.0,
+            _ if node > CUSTOM_INTERVALS => 1.0,
+            _ => xi_at(&segments, (node as f64 - 0.5) * width),
+        };
+        let density = |node: usize| {
+            let is_half = node == 0 || node == CUSTOM_INTERVALS;
+            (edge(node + 1) - edge(node)).max(0.0) / (if is_half { 0.5 } else { 1.0 } * width)
+        };
+        let density: Vec<f64> = (0..=CUSTOM_INTERVALS).map(density).collect();
         custom_table(distance_max, &density).expect("the shares are not negative and add to 1")
     }
 

@@ -12,40 +12,17 @@ use crate::job::probe::{
     DrawAnswer, DrawQuestion, FresnelQuestion, LobeAnswer, LobeQuestion, MaterialQuestion, RandomQuestion, RayAnswer,
     RayQuestion,
 };
-use crate::job::tiles::TILE_SIDE;
 use crate::named::Named;
-use crate::optics::albedo::{ALBEDO_NODES, ROUGH_ALBEDO_LENGTH, ROUGHNESS_NODES, TOTAL_NODES};
-use crate::optics::chord::{
-    GAUSS_6, GAUSS_12, GAUSS_20, PEAK_RADIUS, RANGE_MAX, SHORT_RANGE, SHORT_RULE_ROUGHNESS, TINY,
-};
-use crate::optics::coat_medium::{COLOR_MIN, INNER_MAX, WAY_COSINE_MIN};
-use crate::optics::curve::{CUSTOM_INTERVALS, Curve};
+use crate::optics::chord::{GAUSS_6, GAUSS_12, GAUSS_20, RANGE_MAX};
+use crate::optics::curve::Curve;
 use crate::optics::fresnel::Fresnel;
 use crate::optics::layer::Layer;
-use crate::optics::layer::base::BASE_EDGE;
-use crate::optics::layer::fuzz::FUZZ_ROUGHNESS_MIN;
-use crate::optics::layer::transmission::APART_LEAST;
-use crate::optics::lobe::{ALPHA_MIN, Horizon, Lobe, LobeTraits, MIRROR_WIDTH, Width};
-use crate::optics::material::{
-    COAT_ABSORBS, COAT_IS_GGX, COATS_BASE, COMPENSATES, FIELDS, FILM_BANDS, Field, HAS_BOX, HAS_PROFILE, HOLDS_FILM,
-    HOLDS_INTEGRALS, LIGHT_GROUP_SHIFT, MATCHED_NODES, NO_TEXTURE, OVER_AZIMUTH, SPARES_METAL, TEXTURES, VERTEX_BASE,
-    VERTEX_EMISSION, VERTEX_OPACITY, WEIGHS_INDEX,
-};
+use crate::optics::lobe::{Horizon, Lobe, LobeTraits, Width};
+use crate::optics::material::{FIELDS, Field, NO_TEXTURE, TEXTURES};
 use crate::optics::random::Sequence;
-use crate::optics::rough_diffuse::{HEAD_ON, MEAN, ROUGH_COSINE_MIN};
 use crate::optics::target::{TextureTarget, TextureValues};
-use crate::optics::thin_film::{BAND_WIDTH, FILM_TINY, LARGEST_FILM_F0, LEAST_FILM_COSINE, UNBANDED_PHASE};
-use crate::scene::camera::{GAUSSIAN_SIGMA, LENS_DIMENSION, PIXEL_DIMENSION, PixelFilter};
+use crate::scene::camera::PixelFilter;
 use crate::scene::catcher::{CATCHER_BEND, CATCHER_HALF_SIDE, CATCHER_REFLECTANCE};
-use crate::scene::inversion::DRAW_BITS;
-use crate::scene::light::COSINE_MIN;
-use crate::scene::light_profile::PROFILE_AXES_LENGTH;
-use crate::scene::medium::NO_MEDIUM;
-use crate::scene::surface::{MIRROR_HEIGHT_MIN, POSITION_ERROR, VIEW_COSINE_MIN};
-use crate::scene::texture::{
-    CHANNEL_SHIFT, IS_BOX, IS_FINE, IS_NEAREST, IS_SECOND_SET, IS_SRGB, TURNS_NORMALS, WRAP_CLAMP, WRAP_MIRRORED,
-    WRAP_REPEAT, WRAP_SHIFT,
-};
 
 /// A generated module: its name for `#import`, and its generator.
 pub type Generated = (&'static str, fn() -> String);
@@ -136,22 +113,51 @@ fn material_structure() -> String {
 
 /// Constants by their names in Rust.
 macro_rules! by_name {
-    ($type:ty: $($name:ident)*) => {
-        [$((stringify!($name), $name as $type)),*]
+    (@ $type:ty, $($module:ident)::+, $($name:ident)*) => {{
+        use crate::$($module)::+ as from;
+        vec![$((stringify!($name), from::$name as $type)),*]
+    }};
+    ($type:ty: $($($module:ident)::+: $($name:ident)*;)*) => {
+        [$(by_name!(@ $type, $($module)::+, $($name)*)),*].concat()
     };
 }
 
 /// The constants that Rust and the shaders share.
 fn constants() -> String {
     let whole = by_name! { u32:
-        ALBEDO_NODES TOTAL_NODES ROUGHNESS_NODES ROUGH_ALBEDO_LENGTH CUSTOM_INTERVALS MATCHED_NODES NO_TEXTURE HOLDS_INTEGRALS HOLDS_FILM OVER_AZIMUTH VERTEX_BASE VERTEX_EMISSION VERTEX_OPACITY SPARES_METAL COMPENSATES FILM_BANDS HAS_BOX WEIGHS_INDEX HAS_PROFILE COATS_BASE COAT_ABSORBS COAT_IS_GGX LIGHT_GROUP_SHIFT WRAP_REPEAT WRAP_MIRRORED WRAP_CLAMP IS_SRGB IS_NEAREST IS_SECOND_SET IS_FINE IS_BOX TURNS_NORMALS CHANNEL_SHIFT WRAP_SHIFT PIXEL_DIMENSION LENS_DIMENSION DRAW_BITS NO_MEDIUM PROFILE_AXES_LENGTH TILE_SIDE
+        optics::albedo: ALBEDO_NODES TOTAL_NODES ROUGHNESS_NODES ROUGH_ALBEDO_LENGTH;
+        optics::curve: CUSTOM_INTERVALS;
+        optics::material: MATCHED_NODES NO_TEXTURE HOLDS_INTEGRALS HOLDS_FILM OVER_AZIMUTH VERTEX_BASE VERTEX_EMISSION VERTEX_OPACITY SPARES_METAL COMPENSATES FILM_BANDS HAS_BOX WEIGHS_INDEX HAS_PROFILE COATS_BASE COAT_ABSORBS COAT_IS_GGX LIGHT_GROUP_SHIFT;
+        scene::texture: WRAP_REPEAT WRAP_MIRRORED WRAP_CLAMP IS_SRGB IS_NEAREST IS_SECOND_SET IS_FINE IS_BOX TURNS_NORMALS CHANNEL_SHIFT WRAP_SHIFT;
+        scene::camera: PIXEL_DIMENSION LENS_DIMENSION;
+        scene::inversion: DRAW_BITS;
+        scene::medium: NO_MEDIUM;
+        scene::light_profile: PROFILE_AXES_LENGTH;
+        job::tiles: TILE_SIDE;
     };
     let real = by_name! { f64:
-        ALPHA_MIN APART_LEAST MIRROR_WIDTH BASE_EDGE INNER_MAX FUZZ_ROUGHNESS_MIN HEAD_ON MEAN ROUGH_COSINE_MIN LARGEST_FILM_F0 LEAST_FILM_COSINE FILM_TINY BAND_WIDTH UNBANDED_PHASE COLOR_MIN WAY_COSINE_MIN SHORT_RULE_ROUGHNESS SHORT_RANGE PEAK_RADIUS TINY GAUSSIAN_SIGMA COSINE_MIN POSITION_ERROR MIRROR_HEIGHT_MIN VIEW_COSINE_MIN
+        optics::lobe: ALPHA_MIN MIRROR_WIDTH;
+        optics::layer::transmission: APART_LEAST;
+        optics::layer::base: BASE_EDGE;
+        optics::coat_medium: INNER_MAX COLOR_MIN WAY_COSINE_MIN;
+        optics::layer::fuzz: FUZZ_ROUGHNESS_MIN;
+        optics::rough_diffuse: HEAD_ON MEAN ROUGH_COSINE_MIN;
+        optics::thin_film: LARGEST_FILM_F0 LEAST_FILM_COSINE FILM_TINY BAND_WIDTH UNBANDED_PHASE;
+        optics::chord: SHORT_RULE_ROUGHNESS SHORT_RANGE PEAK_RADIUS TINY;
+        scene::camera: GAUSSIAN_SIGMA;
+        scene::light: COSINE_MIN;
+        scene::surface: POSITION_ERROR MIRROR_HEIGHT_MIN VIEW_COSINE_MIN;
     };
     let mut text = choices::<Layer>("LAYER");
-    text.extend(whole.map(|(name, value)| format!("const {name}: u32 = {value}u;\n")));
-    text.extend(real.map(|(name, value)| format!("const {name}: f32 = {value:?}f;\n")));
+    text.extend(
+        whole
+            .iter()
+            .map(|(name, value)| format!("const {name}: u32 = {value}u;\n")),
+    );
+    text.extend(
+        real.iter()
+            .map(|(name, value)| format!("const {name}: f32 = {value:?}f;\n")),
+    );
     let vector = |[a, b]: [f64; 2]| format!("vec2f({a:?}, {b:?})");
     let nodes = [GAUSS_6.as_slice(), &GAUSS_12, &GAUSS_20].concat();
     let count = nodes.len();

@@ -102,7 +102,8 @@ inlined! {
     pub fn facet_gain<T: Real>(head_on: Vec3<T>, grazing: Vec3<T>, kept: T, cosine: T) -> Vec3<T> {
         let (one, leaves) = (T::ONE, kept.sqrt());
         let slant = T::from_f64(0.45) - T::from_f64(0.2) * cosine;
-        let mean = head_on.mix(grazing, kept * leaves * slant);
+        // A tint may be above 1.
+        let mean = head_on.mix(grazing, kept * leaves * slant).map(|mean| mean.min(one));
         let again = mean.map(|mean| mean * leaves / (one - mean * (one - leaves)));
         Vec3::ONE + again * ((one - kept) / kept)
     }

@@ -43,11 +43,12 @@ fn material_members(field: &Field) -> Vec<(String, usize, usize)> {
     if field.name != "textures" {
         return vec![(field.name.to_owned(), field.offset, field.size)];
     }
-    let texture = |target: &TextureTarget| {
-        let name = format!("{}_texture", target.name().replace('-', "_"));
-        (name, field.offset + 4 * *target as usize, 4)
+    let texture = |index: usize| {
+        let named = |target: &TextureTarget| format!("{}_texture", target.name().replace('-', "_"));
+        let name = TextureTarget::ALL.get(index).map(named);
+        (name.unwrap_or(format!("spare_{index}")), field.offset + 4 * index, 4)
     };
-    TextureTarget::ALL.iter().map(texture).collect()
+    (0..field.size / 4).map(texture).collect()
 }
 
 fn rust_layouts() -> Vec<Layout> {

@@ -13,8 +13,8 @@ use glossmith::study::evaluate::Evaluator;
 use super::support::Random;
 
 const IS_THOROUGH: bool = cfg!(feature = "thorough");
-/// Walks of a view, whose share that is reflected so has a standard error of at most 0.003, or 0.001.
-const WALKS: u32 = if IS_THOROUGH { 300_000 } else { 30_000 };
+/// Walks of a view, whose share that is reflected so has a standard error of at most 0.002, or 0.001.
+const WALKS: u32 = if IS_THOROUGH { 300_000 } else { 60_000 };
 const ROUGHNESS: &[f64] = if IS_THOROUGH { &[0.2, 0.3, 0.4, 0.6, 0.8, 1.0] } else { &[0.3, 0.6, 1.0] };
 const COSINES: &[f64] = if IS_THOROUGH { &[1.0, 0.7, 0.4, 0.2, 0.1] } else { &[1.0, 0.4, 0.1] };
 const INDICES: &[f64] = if IS_THOROUGH { &[1.3, 1.5, 2.0, 2.5] } else { &[1.3, 2.5] };
@@ -120,7 +120,7 @@ fn reflected(own: &[&str], roughness: f64, side: f64) -> Vec<[f64; 3]> {
         assign(&mut material, assignment).unwrap();
     }
     let evaluator = Evaluator::open(&material, EngineChoice::Cpu, Precision::Single).unwrap();
-    let of = |cosine: &f64| evaluator.albedo(side * cosine, 1 << 14, 1).unwrap().reflected;
+    let of = |cosine: &f64| evaluator.albedo(side * cosine, 1 << 16, 1).unwrap().reflected;
     COSINES.iter().map(of).collect()
 }
 
@@ -143,7 +143,7 @@ fn metals_reflect_what_walks_do() {
     }
 }
 
-/// From outside at any roughness. From within up to 0.6: beyond it few facets reflect to where they are seen, and what they
+/// From outside at any roughness. From within up to 0.6, and there within 0.02 but for the noise: beyond it few facets reflect to where they are seen, and what they
 /// would have to carry for the others is left to the refraction.
 #[test]
 fn glass_reflects_what_walks_do() {
@@ -160,7 +160,8 @@ fn glass_reflects_what_walks_do() {
                 for ([found, ..], &cosine) in all.into_iter().zip(COSINES) {
                     let truth = of_glass(roughness * roughness, cosine, ior.powf(side), &mut rng);
                     let off = (found - truth).abs();
-                    assert!(off < 0.025, "{ior}, roughness {roughness} at {}: {found} for {truth}", side * cosine);
+                    let limit = if side > 0.0 { 0.02 } else { 0.028 };
+                    assert!(off < limit, "{ior}, roughness {roughness} at {}: {found} for {truth}", side * cosine);
                 }
             }
         }

@@ -89,9 +89,9 @@ const LOOKS: [(&str, Option<[f64; 2]>, f64); 6] = [
     ("gold", Some([72.0, 98.0]), 25.0),
     ("copper", Some([20.0, 65.0]), 12.0),
     ("car-paint-red", Some([15.0, 45.0]), 40.0),
-    ("chrome", None, 8.0),
+    ("chrome", None, 9.0),
     ("porcelain", None, 12.0),
-    ("rubber", None, 8.0),
+    ("rubber", None, 9.0),
 ];
 
 /// The table of docs/PERFORMANCE.md is what this prints; before is the dark studio under AgX.

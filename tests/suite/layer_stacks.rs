@@ -154,7 +154,7 @@ fn thick_films_keep_all_light() {
                 let own = format!("specular.lobe={lobe} thin_film.weight=1 thin_film.ior=2 specular.roughness={film}");
                 let filmed = material(&format!("{below} {own}"));
                 for cosine in [1.0, 0.6, 0.3, 0.1] {
-                    let found = sums(&albedo(&filmed, cosine, 1 << 13));
+                    let found = sums(&albedo(&filmed, cosine, 1 << 14));
                     assert!(found.iter().all(|sum| (sum - 1.0).abs() < 0.008), "{own} at {cosine}: {found:?}");
                 }
             }
@@ -165,20 +165,17 @@ fn thick_films_keep_all_light() {
 /// What comes in with a weight of a millionth changes nothing that is seen: on random stacks, for each weight.
 #[test]
 fn weights_come_in_without_a_jump() {
-    const WEIGHTS: [&str; 13] = [
+    const WEIGHTS: [&str; 10] = [
         "base.weight",
         "base.diffuse_roughness",
         "base.metalness",
         "specular.weight",
-        "specular.anisotropy",
         "coat.weight",
         "coat.darkening",
-        "coat.anisotropy",
         "fuzz.weight",
         "thin_film.weight",
         "thin_film.thickness",
         "transmission.weight",
-        "transmission.roughness",
     ];
     let mut rng = Random::new(7);
     for number in 0..8 {
@@ -191,7 +188,7 @@ fn weights_come_in_without_a_jump() {
             let is_drawn = ["roughness", "ior", "thickness", "darkening"]
                 .iter()
                 .any(|part| id.ends_with(part));
-            if is_drawn || WEIGHTS.contains(&id) && !id.ends_with("anisotropy") {
+            if is_drawn && id != "transmission.roughness" || WEIGHTS.contains(&id) {
                 let part = rng.unit();
                 let value = match id {
                     _ if id.ends_with("ior") => 1.0 + part,
@@ -234,10 +231,9 @@ fn cut_light_is_told_without_refraction() {
     );
 }
 
-/// Light that is lost between white facets comes back with another factor of the colour: what single scattering keeps of it
-/// is in the review of the physics, part 3.1.
+/// Light that is lost between white facets meets others until it leaves, and each takes the colour once more.
 #[test]
-fn a_coloured_metal_takes_its_colour_twice() {
+fn a_coloured_metal_takes_its_colour_each_time() {
     let metal = material(
         "specular.lobe=ggx specular.fresnel=none specular.color=0.5,0.5,0.5 base.metalness=1 specular.roughness=0.8",
     );
@@ -250,7 +246,9 @@ fn a_coloured_metal_takes_its_colour_twice() {
         (0.1, 0.8331),
     ] {
         let [found, ..] = albedo(&metal, cosine, 1 << 16).reflected;
-        let expected = 0.5 * (kept + 0.5 * (1.0 - kept));
+        let leaves = f64::sqrt(kept);
+        let again = 0.5 * leaves / (1.0 - 0.5 * (1.0 - leaves));
+        let expected = 0.5 * (kept + again * (1.0 - kept));
         assert!((found - expected).abs() < 2e-3, "at {cosine}: {found} for {expected}");
     }
 }

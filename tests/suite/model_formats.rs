@@ -673,6 +673,52 @@ fn parts_of_ply_files_are_read_under_all_their_names() {
     says(&other, Fate::Ignored, "the property quality of each vertex");
 }
 
+/// A scene with Z up: a mesh with a subset, two more of it as instances, a lamp of 100 nits and a camera; alone and in a package.
+#[test]
+fn usd_files_come_with_instances_lights_and_cameras() {
+    let folder = Folder::new();
+    let text = std::fs::read_to_string(std::path::Path::new(crate::ROOT).join("fuzz/corpus/usd/quad.usd")).unwrap();
+    let mut package = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
+    let stored = zip::write::SimpleFileOptions::default().compression_method(zip::CompressionMethod::Stored);
+    package.start_file("quad.usda", stored).unwrap();
+    package.write_all(text.as_bytes()).unwrap();
+    let package = package.finish().unwrap().into_inner();
+    for (name, bytes) in [("quad.usd", text.as_bytes()), ("quad.usdz", &package)] {
+        let model = folder.load(name, bytes).unwrap();
+        let [red] = &model.slots[..] else {
+            panic!("{name}: {:?}", model.slots)
+        };
+        assert_eq!(
+            (model.triangle_count(), red.name.as_str(), red.color("base.color")),
+            (9, "Red", [0.8, 0.1, 0.1]),
+            "{name}"
+        );
+        let (low, high) = model
+            .mesh
+            .positions
+            .iter()
+            .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), place| {
+                (low.min(*place), high.max(*place))
+            });
+        assert!(low.abs_diff_eq(DVec3::new(0.0, 2.0, -1.0), 1e-9), "{name}: {low}");
+        assert!(high.abs_diff_eq(DVec3::new(5.0, 3.0, 0.0), 1e-9), "{name}: {high}");
+        let ([lamp], [camera]) = (&model.lights[..], &model.cameras[..]) else {
+            panic!("{name}: {:?} {:?}", model.lights, model.cameras)
+        };
+        assert!(
+            (lamp.intensity - 100.0 * std::f32::consts::PI / 4.0).abs() < 1e-3,
+            "{lamp:?}"
+        );
+        assert!((camera.position[2] - 4.0).abs() < 1e-9, "{camera:?}");
+    }
+    let deep = format!("#usda 1.0\n{}", "def \"a\" {".repeat(1000));
+    let error = folder
+        .load("deep.usd", deep.as_bytes())
+        .expect_err("too deep")
+        .to_string();
+    assert!(error.contains("nested"), "{error}");
+}
+
 #[test]
 fn folders_and_archives_are_searched_for_a_model() {
     let folder = Folder::new();

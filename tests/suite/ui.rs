@@ -21,7 +21,7 @@ use glossmith::store::{PRESETS, save_document, save_material};
 
 use super::manual::manual_pages;
 use super::ui_files::wait_for_words;
-use super::ui_hands::{Hands as _, press};
+use super::ui_hands::{Hands as _, press, type_path};
 use super::worker::small_document;
 
 /// The window without a screen.
@@ -356,7 +356,12 @@ fn every_panel_and_sheet_has_named_inputs() {
         harness.key_press(Key::Escape);
         harness.run_steps(2);
     }
-    assert!(!harness.has("Contents"), "escape closes the manual");
+    let manual = |harness: &Editor| harness.query_by_role_and_label(Role::Button, "Contents").is_some();
+    harness.command(Command::Manual);
+    see(&mut harness, "the manual", manual);
+    harness.key_press(Key::Escape);
+    harness.run_steps(2);
+    assert!(!manual(&harness), "escape closes it");
     for theme in 0..2 {
         harness.command(Command::ToggleTheme);
         harness.check_accessibility();
@@ -431,13 +436,8 @@ fn the_picture_is_saved_as_it_is_shown() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let mut harness = editor();
     harness.command(Command::SavePicture);
-    see(&mut harness, "the path field", |harness| {
-        harness.query_by_role_and_label(Role::TextInput, "Path").is_some()
-    });
-    harness.check_accessibility();
     let path = folder.path().join("shown.png");
-    harness.write("Path", &path.display().to_string());
-    harness.click(Role::Button, "Save");
+    type_path(&mut harness, &path, "Save");
     wait_for_words(&mut harness, "shown.png");
     let saved = image::open(&path).expect("a picture").to_rgba8();
     let snapshot = harness.state().snapshot();

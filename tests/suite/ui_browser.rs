@@ -13,7 +13,7 @@ use glossmith::store::{PRESETS, save_material};
 
 use super::cli_support::write_hdr;
 use super::ui::{Editor, Memory, editor_of, editor_remembering, options, request, see, settle, undo, wait};
-use super::ui_hands::Hands as _;
+use super::ui_hands::{Hands as _, type_path};
 
 fn has(harness: &Editor, label: &str) -> bool {
     harness.query_by_role_and_label(Role::Button, label).is_some()
@@ -115,11 +115,7 @@ fn a_preset_shows_where_it_is_used_and_replaces_a_material_everywhere() {
 /// Chooses a folder by the path field.
 fn watch(harness: &mut Editor, folder: &Path) {
     harness.command(Command::WatchFolder);
-    see(harness, "the path field", |harness| {
-        harness.query_by_role_and_label(Role::TextInput, "Path").is_some()
-    });
-    harness.write("Path", &folder.display().to_string());
-    click(harness, "Watch");
+    type_path(harness, folder, "Watch");
 }
 
 #[test]

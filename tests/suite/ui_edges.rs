@@ -1,13 +1,12 @@
 //! Rough edges of the window: endings of saved projects, hard cases that stop.
 
-use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable as _;
 use glossmith::app::Options;
 use glossmith::app::actions::Command;
 use glossmith::app::layout::Pane;
 
-use super::ui::{Editor, editor, editor_of, options, see, see_label, settle, wait};
-use super::ui_hands::Hands as _;
+use super::ui::{Editor, editor, editor_of, options, see_label, settle, wait};
+use super::ui_hands::{Hands as _, type_path};
 
 /// Whether a text is shown anywhere.
 fn is_shown(harness: &Editor, part: &str) -> bool {
@@ -23,12 +22,7 @@ fn projects_are_saved_under_the_ending_of_their_kind() {
     });
     settle(&mut harness);
     harness.command(Command::SaveAs);
-    see(&mut harness, "the path field", |harness| {
-        harness.query_by_role_and_label(Role::TextInput, "Path").is_some()
-    });
-    let path = folder.path().join("proj").display().to_string();
-    harness.write("Path", &path);
-    harness.click(Role::Button, "Save");
+    type_path(&mut harness, &folder.path().join("proj"), "Save");
     let named = folder.path().join("proj.glossmith.json");
     wait(&mut harness, "the project", |_| named.is_file());
 }

@@ -1,7 +1,7 @@
 //! Files for other programs, made and opened in the window.
 
-use crate::ui::{Editor, editor, request, see, see_label, wait};
-use crate::ui_hands::Hands as _;
+use crate::ui::{Editor, editor, request, see_label, wait};
+use crate::ui_hands::{Hands as _, type_path};
 use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable as _;
 use glossmith::app::actions::{Action, Command};
@@ -11,18 +11,7 @@ use glossmith::store::preset::{load_material, material_text};
 /// Chooses *Export…* and types a path.
 fn ask_for(harness: &mut Editor, path: &std::path::Path) {
     request(harness, Action::Do(Command::Export));
-    type_path(harness, path);
-}
-
-fn type_path(harness: &mut Editor, path: &std::path::Path) {
-    see(harness, "the path field", |harness| {
-        harness.query_by_role_and_label(Role::TextInput, "Path").is_some()
-    });
-    let field = harness.get_by_role_and_label(Role::TextInput, "Path");
-    field.set_text_value_accesskit(&path.display().to_string());
-    harness.run_steps(2);
-    harness.click(Role::Button, "Save");
-    harness.run_steps(2);
+    type_path(harness, path, "Save");
 }
 
 #[test]

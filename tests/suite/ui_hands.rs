@@ -102,7 +102,8 @@ pub(super) fn type_path(harness: &mut Editor, path: &Path, button: &str) {
     see(harness, "the path field", |harness| {
         harness.query_by_role_and_label(Role::TextInput, "Path").is_some()
     });
+    harness.check_accessibility();
     harness.write("Path", &path.display().to_string());
-    harness.get_by_role_and_label(Role::Button, button).click_accesskit();
-    harness.run_steps(4);
+    press(harness, button);
+    harness.step();
 }

@@ -120,7 +120,8 @@ fn the_race_beside_the_convergence() {
     let place = |label: &str| harness.get_by_label(label).rect();
     let (race, error) = (place("Time against bias"), place("Error against time"));
     let around = |chart: Rect| Rect::from_min_max(chart.min - Vec2::new(60.0, 0.0), chart.max + Vec2::new(10.0, 22.0));
-    let below = Rect::from_min_max(egui::pos2(0.0, race.bottom()), egui::pos2(race.right() + 20.0, 690.0));
+    // The chart shrinks to what the lines below it leave.
+    let below = Rect::from_min_max(egui::pos2(0.0, race.top()), egui::pos2(race.right() + 20.0, 690.0));
     // The text over the chart: how many lines it takes depends on the numbers.
     let tabs = place("Curve").bottom() + 5.0;
     let over = Rect::from_min_max(egui::pos2(error.left() - 60.0, tabs), error.right_top());

@@ -212,7 +212,7 @@ fn ctrl_shift_and_a_click_explain_the_pixel() {
 fn the_part_below_a_dragged_preset_is_named() {
     let mut harness = editor();
     let [from, to] = [
-        harness.get_by_role_and_label(Role::Button, "Rubber"),
+        harness.get_by_role_and_label(Role::Button, "Plastic blue"),
         harness.get_by_label("Viewport"),
     ]
     .map(|node| node.rect().center());
@@ -226,7 +226,7 @@ fn the_part_below_a_dragged_preset_is_named() {
     assert!(harness.query_by_label_contains("Drop on ").is_some());
     harness.drop_at(to);
     harness.run_steps(3);
-    assert_eq!(harness.document().materials[0].name, "Rubber");
+    assert_eq!(harness.document().materials[0].name, "Plastic blue");
     assert!(harness.query_by_label_contains("Drop on ").is_none());
 }
 

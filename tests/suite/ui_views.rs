@@ -9,7 +9,7 @@ use glossmith::document::{AreaLight, CameraSettings};
 use glossmith::scene::camera::Projection;
 
 use super::ui::{Editor, editor, editor_of, editor_with, options, picture, see, settle, undo};
-use super::ui_hands::Hands as _;
+use super::ui_hands::{Hands as _, type_path};
 use super::worker::small_document;
 
 fn camera(harness: &Editor) -> CameraSettings {
@@ -100,11 +100,7 @@ fn a_reference_picture_is_shown_under_over_and_beside_the_render() {
     let (before, shown) = (harness.document().clone(), picture(&harness));
     harness.reveal(Pane::Camera);
     harness.get_by_label("Reference image").click_accesskit();
-    see(&mut harness, "the path field", |harness| {
-        harness.query_by_role_and_label(Role::TextInput, "Path").is_some()
-    });
-    harness.write("Path", &file.display().to_string());
-    harness.click(Role::Button, "Open");
+    type_path(&mut harness, &file, "Open");
     let named = |harness: &Editor, place: &str| {
         let name = format!("Reference image {place} the render");
         harness.query_by_label(&name).map(|picture| picture.rect())

@@ -56,7 +56,7 @@ fn the_window_begins_with_looks_and_measures_where_that_is_asked_for() {
     );
     use_workspace(&mut harness, MEASURE);
     assert!(has(&harness, "samples/s"), "the status bar tells numbers");
-    for pane in [Pane::Convergence, Pane::Race, Pane::Inspector] {
+    for pane in [Pane::Convergence, Pane::Race, Pane::Effects] {
         assert!(harness.query_all_by_label(pane.title()).next().is_some(), "{pane:?}");
     }
     use_workspace(&mut harness, LOOK);

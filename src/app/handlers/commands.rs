@@ -3,7 +3,6 @@
 use std::time::Instant;
 
 use crate::app::actions::{Action, Command};
-use crate::app::book::KEYS;
 use crate::app::desk::PICTURE_SIZE;
 use crate::app::handlers::pictures::Destination;
 use crate::app::kit::keys;
@@ -277,7 +276,7 @@ impl App {
                 };
             }
             Command::Manual => book::ask(ctx, self.topic(ctx)),
-            Command::Shortcuts => book::ask(ctx, KEYS),
+            Command::Shortcuts => self.sheet = Sheet::Shortcuts,
             Command::ModelFile => self.sheet = Sheet::ModelFile,
             Command::About => self.sheet = Sheet::About,
             Command::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),

@@ -247,7 +247,7 @@ impl App {
     /// panel under the pointer.
     pub fn topic(&self, ctx: &Context) -> &'static str {
         let is_asked = self.unsaved.is_open() || !self.leftovers.is_empty();
-        let is_searching = matches!(self.sheet, Sheet::Palette { .. });
+        let is_searching = matches!(self.sheet, Sheet::Palette { .. } | Sheet::Shortcuts);
         let sheets = [
             (self.sheet == Sheet::ModelFile, MODEL_FILE),
             (matches!(self.sheet, Sheet::Path { .. }), EXPLAIN),

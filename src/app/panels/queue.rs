@@ -74,7 +74,7 @@ fn row(ui: &mut Ui, desk: &Desk, entry: &Entry, can_be_first: bool) {
             let bar = ui.add(ProgressBar::new(*share as f32).show_percentage());
             bar.accessible_name(format!("Progress of {name}"));
             let left = time_left(*share, entry.since.elapsed().as_secs_f64());
-            widgets::note(ui, left.unwrap_or_default());
+            left.into_iter().for_each(|left| widgets::note(ui, left));
         }
         State::Done(words) | State::Cancelled(words) => widgets::note(ui, words),
         State::Failed(why) => widgets::failure(ui, why.clone()),

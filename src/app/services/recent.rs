@@ -1,7 +1,10 @@
 //! The files opened and saved last.
 
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
+use crate::app::services::beside::Beside;
 use crate::import::endings::is_picture;
 use crate::scene::environment::EnvironmentSource;
 use crate::store::file_kind::may_hold_document;
@@ -13,9 +16,17 @@ const COUNT: usize = 12;
 #[derive(Default)]
 pub struct Recent {
     pub paths: Vec<PathBuf>,
+    /// Looks each second which files are not there: a network folder may take its time.
+    search: Beside<(u64, Vec<PathBuf>), Arc<HashSet<PathBuf>>>,
 }
 
 impl Recent {
+    /// The list as the last start left it.
+    pub fn new(paths: Vec<PathBuf>) -> Self {
+        let search = Beside::default();
+        Self { paths, search }
+    }
+
     /// Those that are environments.
     pub fn environments(&self) -> impl Iterator<Item = EnvironmentSource> {
         // Of images only environments are remembered, and those that have a document inside.
@@ -31,5 +42,15 @@ impl Recent {
             self.paths.insert(0, path);
             self.paths.truncate(COUNT);
         }
+    }
+
+    /// Those that are not there any more, as far as is known.
+    pub fn missing(&mut self, ctx: &egui::Context) -> Arc<HashSet<PathBuf>> {
+        let query = (ctx.input(|input| input.time) as u64, self.paths.clone());
+        let missing = self.search.ask(ctx, "recent files", query, |(_, paths), responder| {
+            let missing = paths.into_iter().filter(|path| !path.is_file());
+            responder.publish(Arc::new(missing.collect()));
+        });
+        missing.unwrap_or_default()
     }
 }

@@ -16,7 +16,8 @@ type Stamp = Option<(SystemTime, u64)>;
 /// The files that are looked at, and how many looks found one saved, as far as that was told.
 #[derive(Default)]
 pub struct Watched {
-    looks: Beside<Vec<PathBuf>, u64>,
+    looks: Beside<Vec<(PathBuf, Stamp)>, u64>,
+    paths: Vec<PathBuf>,
     told: Option<u64>,
 }
 
@@ -29,13 +30,23 @@ impl Watched {
     /// Watches these files from now on; those already watched keep their state. Whether one was saved since this was last
     /// called.
     pub fn watch(&mut self, ctx: &egui::Context, paths: Vec<PathBuf>) -> bool {
+        if self.paths != paths {
+            // As they are now: the thread may come to them after another program did.
+            let stamped = paths.iter().map(|path| (path.clone(), stamp(path))).collect();
+            self.paths = paths;
+            self.look(ctx, stamped);
+        }
+        let latest = self.looks.latest();
+        std::mem::replace(&mut self.told, latest) != latest
+    }
+
+    fn look(&mut self, ctx: &egui::Context, files: Vec<(PathBuf, Stamp)>) {
         // As each was read, and at the last look.
         let mut stamps: HashMap<PathBuf, [Stamp; 2]> = HashMap::new();
         let mut saved = 0;
-        let latest = self.looks.ask(ctx, "watched", paths, move |paths, responder| {
-            stamps.retain(|path, _| paths.contains(path));
-            for path in paths {
-                let now = stamp(&path);
+        self.looks.ask_again(ctx, "watched", files, move |files, responder| {
+            stamps.retain(|path, _| files.iter().any(|(file, _)| file == path));
+            for (path, now) in files {
                 stamps.entry(path).or_insert([now; 2]);
             }
             while !responder.is_superseded() {
@@ -55,6 +66,5 @@ impl Watched {
                 }
             }
         });
-        std::mem::replace(&mut self.told, latest) != latest
     }
 }

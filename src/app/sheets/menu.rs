@@ -24,6 +24,7 @@ pub enum Sheet {
         /// What can be used beside commands, with what uses it.
         things: Vec<Findable>,
     },
+    Shortcuts,
     ModelFile,
     About,
     /// The account of a path.
@@ -103,13 +104,17 @@ fn entry(ui: &mut Ui, command: Command, edits: &Edits, actions: &mut Vec<Action>
     }
 }
 
-/// A menu of the files opened and saved last.
+/// A menu of the files opened and saved last; those that are not there any more are greyed.
 fn open_recent(ui: &mut Ui, recent: &mut Recent, actions: &mut Vec<Action>) {
     ui.add_enabled_ui(!recent.paths.is_empty(), |ui| {
         ui.menu_button("Open recent", |ui| {
             ui.set_min_width(220.0);
+            let missing = recent.missing(ui.ctx());
             for path in &recent.paths {
-                if widgets::pressed(ui, file_name(path), &path.display().to_string()) {
+                let is_there = !missing.contains(path);
+                let (name, full) = (file_name(path), path.display().to_string());
+                let note = if is_there { "" } else { " (not there any more)" };
+                if widgets::pressed_if(ui, is_there, name + note, &full, &full) {
                     do_and_close(ui, actions, Action::Open(path.clone()));
                 }
             }
@@ -189,6 +194,7 @@ pub fn sheet(
                 things,
             } => palette::show(ui, search, selected, document, (material, things), actions),
             Sheet::ModelFile => import::show(ui, document, (model, lobe), actions),
+            Sheet::Shortcuts => shortcuts(ui),
             Sheet::About => about(ui),
             Sheet::Path { text } => path(ui, text),
         };
@@ -197,6 +203,45 @@ pub fn sheet(
     if is_done.is_some() {
         *sheet = Sheet::None;
     }
+}
+
+#[rustfmt::skip]
+const MOUSE: [(&str, &str); 10] = [
+    ("Drag", "Turn the camera"),
+    ("Middle drag, or ctrl and drag", "Pan"),
+    ("Wheel, or right drag", "Zoom"),
+    ("Shift and drag", "Turn the light"),
+    ("Drag a light's mark or handle", "Move or change it; Escape takes it back"),
+    ("Click", "Select the material there"),
+    ("Ctrl, shift and click", "Explain the last sample of the pixel"),
+    ("Arrows, page up and down", "Turn and zoom, with the viewport focused"),
+    ("Double-click on a label", "Reset the parameter"),
+    ("Shift and drag a number", "Change it finely"),
+];
+
+fn shortcuts(ui: &mut Ui) -> bool {
+    ui.set_width(440.0);
+    ui.heading("Keys and mouse");
+    ui.add_space(theme::GAP);
+    scrolled(ui, |ui| {
+        Grid::new("keys")
+            .num_columns(2)
+            .spacing(vec2(24.0, 5.0))
+            .show(ui, |ui| {
+                let mut all = MOUSE.map(|(how, what)| (how.to_owned(), what)).to_vec();
+                let commands = Command::ALL
+                    .iter()
+                    .map(|command| (palette::keys(ui, *command), command.label()));
+                all.extend(commands.filter(|(keys, _)| !keys.is_empty()));
+                for (how, what) in all {
+                    ui.label(RichText::new(how).strong());
+                    ui.label(what);
+                    ui.end_row();
+                }
+            });
+    });
+    ui.add_space(theme::GAP);
+    ui.button("Close").clicked()
 }
 
 fn about(ui: &mut Ui) -> bool {

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use openusd::sdf::{FromValueCast, Value};
 use openusd::usd::{Prim, Stage};
 
-use super::{End, end, text_of};
+use super::{End, Known, end, text_of};
 use crate::USD_PREVIEW_SURFACE;
 use crate::files::Files;
 use crate::maps::{Maps, Part};
@@ -31,15 +31,17 @@ type Painted = (Slot, [Option<String>; 2]);
 /// Slots of the materials that meshes have asked for so far.
 pub(super) struct Slots<'a> {
     maps: Maps<'a>,
+    read: &'a Known,
     /// Slot of a material by its path; none for faces without one.
     slot_of: HashMap<Option<String>, u32>,
     painted: Vec<Painted>,
 }
 
 impl<'a> Slots<'a> {
-    pub fn new(files: &'a Files, options: &ModelOptions) -> Self {
+    pub fn new(files: &'a Files, read: &'a Known, options: &ModelOptions) -> Self {
         Self {
             maps: Maps::new(files, options),
+            read,
             slot_of: HashMap::new(),
             painted: Vec::new(),
         }
@@ -54,6 +56,7 @@ impl<'a> Slots<'a> {
                     let mut painter = Painter {
                         name: prim.path().name().unwrap_or_default().to_owned(),
                         maps: &mut self.maps,
+                        read: self.read,
                         report,
                         slot: Slot::default(),
                         uv_sets: [None, None],
@@ -89,6 +92,7 @@ impl<'a> Slots<'a> {
 struct Painter<'a, 'b> {
     name: String,
     maps: &'a mut Maps<'b>,
+    read: &'a Known,
     report: &'a mut ImportReport,
     slot: Slot,
     uv_sets: [Option<String>; 2],
@@ -147,7 +151,11 @@ impl Painter<'_, '_> {
             }
             (None, None) => self.note(Fate::Missing, "the surface of a material"),
         }
+        let mode = self.slot.alpha_mode;
         self.maps.put(&self.parts, &mut self.slot, self.report);
+        if mode == AlphaMode::Mask {
+            self.slot.alpha_mode = mode;
+        }
     }
 
     fn preview_surface(&mut self, shader: &Prim) {
@@ -282,7 +290,8 @@ impl Painter<'_, '_> {
         };
         self.uv_sets[uv_set] = Some(set);
         let name = file.resolved_path().unwrap_or(file.asset_path());
-        let texture = self.maps.image(&[name], None, is_color, self.report)?;
+        let found = self.read.borrow().get(name).cloned();
+        let texture = self.maps.image(&[name], found.as_deref(), is_color, self.report)?;
         let mut wrap = |input: &str| match text_of(&node.attribute(format!("inputs:{input}"))).as_deref() {
             Some("mirror") => Wrap::MirroredRepeat,
             Some("clamp" | "black") => Wrap::ClampToEdge,

@@ -3,7 +3,6 @@
 use std::collections::HashMap;
 
 use glam::{DVec3, Vec2, Vec3, Vec4};
-use openusd::schemas::shade::MaterialBindingAPI;
 use openusd::sdf::Value;
 use openusd::usd::{Prim, TimeCode};
 
@@ -72,11 +71,16 @@ fn ints(prim: &Prim, name: &str, time: TimeCode) -> Option<Vec<i32>> {
     }
 }
 
-/// The path of the material that a prim is bound to.
+/// The path of the material that a prim is bound to, or the nearest of those above it.
 fn bound(prim: &Prim) -> Option<String> {
-    let binding = MaterialBindingAPI::get(prim.stage(), prim.path().clone()).ok()??;
-    let path = binding.compute_bound_material("").ok()??;
-    Some(path.to_string())
+    let of_prim = |prim: Prim| {
+        let mut names = ["material:binding:full", "material:binding"].into_iter();
+        names.find_map(|name| prim.relationship(name).targets().ok()?.into_iter().next())
+    };
+    let mut above = prim.path().ancestors();
+    above
+        .find_map(|path| of_prim(prim.stage().prim(path)))
+        .map(|path| path.to_string())
 }
 
 /// The triangles of a mesh in its space.
@@ -104,12 +108,13 @@ pub(super) fn read_mesh(
         report.note(Fate::Approximated, "a subdivision surface, as its cage", name);
     }
     let all = [counts.len(), points.len(), corners.len()];
+    let is_left = text_of(&prim.attribute("orientation")).as_deref() == Some("leftHanded");
     let normals = Primvar::<[f32; 3]>::read(prim, "primvars:normals", time, all)
         .or_else(|| Primvar::read(prim, "normals", time, all))
-        .or_else(|| is_cage.then(|| smooth(&points, &counts, &corners)));
+        .or_else(|| is_cage.then(|| smooth(&points, &counts, &corners, is_left)));
     let colors = Primvar::<[f32; 3]>::read(prim, "primvars:displayColor", time, all);
     let mut source = Source {
-        is_left: text_of(&prim.attribute("orientation")).as_deref() == Some("leftHanded"),
+        is_left,
         points,
         corners,
         normals,
@@ -121,9 +126,10 @@ pub(super) fn read_mesh(
     let mut whole = Mesh::default();
     for (material, faces) in parts(prim, &counts, time) {
         let (slot, uv_sets) = slots.slot(material.as_deref(), prim.stage(), report);
-        source.uvs = uv_sets.map(|set| {
-            let set = set?;
-            Primvar::read(prim, &format!("primvars:{set}"), time, all).or_else(|| any_uvs(prim, time, all))
+        let [first, second] = uv_sets;
+        source.uvs = [first.or_else(|| Some("st".to_owned())), second].map(|set| {
+            let found = Primvar::read(prim, &format!("primvars:{}", set?), time, all);
+            found.or_else(|| any_uvs(prim, time, all))
         });
         let painted = slots.get(slot);
         let place = painted.texture(TextureTarget::Normal);
@@ -190,7 +196,7 @@ fn parts(prim: &Prim, counts: &[i32], time: TimeCode) -> Vec<Part> {
 }
 
 /// Normals by point, of the faces around it.
-fn smooth(points: &[DVec3], counts: &[i32], corners: &[i32]) -> Primvar<[f32; 3]> {
+fn smooth(points: &[DVec3], counts: &[i32], corners: &[i32], is_left: bool) -> Primvar<[f32; 3]> {
     let mut sums = vec![DVec3::ZERO; points.len()];
     let mut rest = corners;
     for count in counts {
@@ -204,10 +210,11 @@ fn smooth(points: &[DVec3], counts: &[i32], corners: &[i32]) -> Primvar<[f32; 3]
             .sum();
         face.iter().for_each(|point| sums[*point as usize] += area);
     }
+    let side = if is_left { -1.0 } else { 1.0 };
     Primvar {
         values: sums
             .into_iter()
-            .map(|sum| sum.normalize_or_zero().as_vec3().to_array())
+            .map(|sum| (side * sum).normalize_or_zero().as_vec3().to_array())
             .collect(),
         indices: None,
         by: "vertex".to_owned(),

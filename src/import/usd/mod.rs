@@ -31,8 +31,11 @@ const STACK: usize = 256 << 20;
 /// `chair.usdz[textures/wood.png]` in a package.
 struct Beside {
     files: Rc<Files>,
-    read: RefCell<HashMap<String, Rc<[u8]>>>,
+    read: Known,
 }
+
+/// Layers and images that were found, by their names.
+type Known = Rc<RefCell<HashMap<String, Rc<[u8]>>>>;
 
 impl Beside {
     fn bytes(&self, name: &str) -> io::Result<Rc<[u8]>> {
@@ -133,15 +136,17 @@ fn normal(path: &str) -> String {
     parts.join("/")
 }
 
-/// The stage of a file whose contents are given.
-fn opened(path: &Path, bytes: Vec<u8>, files: Rc<Files>) -> Result<Stage, String> {
+/// The stage of a file whose contents are given, and what is found on the way.
+fn opened(path: &Path, bytes: Vec<u8>, files: Rc<Files>) -> Result<(Stage, Known), String> {
     check_depth(&bytes).map_err(|error| error.to_string())?;
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let read = RefCell::new(HashMap::from([(name.clone(), bytes.into())]));
-    let stage = contained(|| Stage::builder().resolver(Beside { files, read }).open(&name));
-    stage
-        .ok_or("its parts contradict each other")?
-        .map_err(|error| format!("{error:#}"))
+    let read = Known::new(HashMap::from([(name.clone(), bytes.into())]).into());
+    let beside = Beside {
+        files,
+        read: read.clone(),
+    };
+    let stage = contained(|| Stage::builder().resolver(beside).open(&name)).ok_or("its parts contradict each other")?;
+    stage.map(|stage| (stage, read)).map_err(|error| format!("{error:#}"))
 }
 
 /// Does work on the stage of a file whose contents are given, with the stack that the crate needs. `None` where the crate gives up.
@@ -153,7 +158,7 @@ pub fn with_stage<T: Send>(
 ) -> Result<T, String> {
     let folder = path.parent().unwrap_or(Path::new(""));
     let files = Files::in_folder(folder, &[], &Import::new(loading));
-    let stage = move || opened(path, bytes, Rc::new(files)).map(|stage| work(&stage));
+    let stage = move || opened(path, bytes, Rc::new(files)).map(|(stage, _)| work(&stage));
     deep(stage).unwrap_or_else(|| Err("its parts contradict each other".to_owned()))
 }
 

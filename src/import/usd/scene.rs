@@ -11,7 +11,7 @@ use openusd::usd::{Attribute, Prim, SchemaBase, SchemaKind, Stage, TimeCode};
 
 use super::material::Slots;
 use super::mesh::read_mesh;
-use super::{DEPTH_MAX, deep, kind, opened, text_of};
+use super::{DEPTH_MAX, Known, deep, kind, opened, text_of};
 use crate::assembly::{Assembly, camera_at, light_at};
 use crate::files::Files;
 use crate::model_error::ModelError;
@@ -29,8 +29,9 @@ const HALF_SPACE: [f64; 2] = [1.55; 2];
 pub(crate) fn load(path: &Path, files: Files, bytes: Vec<u8>, options: &ModelOptions) -> Result<Model, ModelError> {
     let read = || {
         let files = Rc::new(files);
-        let stage = opened(path, bytes, files.clone()).map_err(|reason| ModelError::invalid(path, reason))?;
-        Walk::new(&stage, &files, options).model(path)
+        let opened = opened(path, bytes, files.clone());
+        let (stage, read) = opened.map_err(|reason| ModelError::invalid(path, reason))?;
+        Walk::new(&stage, &files, options).model(path, &read)
     };
     deep(read).unwrap_or_else(|| Err(ModelError::invalid(path, "its parts contradict each other")))
 }
@@ -106,7 +107,7 @@ impl<'a> Walk<'a> {
         }
     }
 
-    fn model(mut self, path: &Path) -> Result<Model, ModelError> {
+    fn model(mut self, path: &Path, read: &Known) -> Result<Model, ModelError> {
         let (stage, loading) = (self.stage, &self.files.import.loading);
         for name in stage.root_prims().unwrap_or_default() {
             self.walk(&stage.prim(format!("/{name}")), self.world_from_stage, 0);
@@ -115,7 +116,7 @@ impl<'a> Walk<'a> {
         for error in stage.composition_errors().iter().take(ERRORS_MAX) {
             self.report.note(Fate::Missing, format!("a part ({error})"), "");
         }
-        let mut slots = Slots::new(self.files, self.options);
+        let mut slots = Slots::new(self.files, read, self.options);
         // The parts of a prim's instances are those of one prim.
         let key = |shown: &Shown| {
             let shared = shown.prim.prim_in_prototype().ok().flatten();

@@ -27,7 +27,7 @@ const COSINES: [f32; 5] = [1.0, 0.7, 0.2, 1e-3, 1e-6];
 
 macro_rules! cases {
     ($($module:ident $lobe:ident = $index:literal, $name:literal, $label:literal, $help:literal;)*) => {
-        pub const CASES: &[HardCase] = &[AT_ITS_ENDS, $(HardCase {
+        pub(super) const CASES: &[HardCase] = &[AT_ITS_ENDS, $(HardCase {
             name: concat!("f32-against-f64-", $name),
             group: "lobe",
             danger: "terms that cancel lose the digits that f32 has to lose",

@@ -30,22 +30,22 @@ impl Walls {
 
 /// Warm, and not much darker than the lamps: gold and copper have their colours where they reflect either.
 const PRODUCT_WALLS: Walls = Walls {
-    floor: [0.495, 0.43, 0.36],
-    wall: [0.395, 0.347, 0.291],
-    ceiling: [0.355, 0.33, 0.3],
+    floor: [0.6, 0.512, 0.417],
+    wall: [0.5, 0.432, 0.352],
+    ceiling: [0.45, 0.407, 0.355],
     bend: 0.25,
 };
 const PRODUCT: [SoftBox; 5] = [
     // From the left above, in front: large and warm, shapes the object.
-    soft_box([-2.6, 2.3, 2.2], [2.1, 1.9], [4.3, 0.4, 0.6], [1.0, 0.815, 0.6]),
+    soft_box([-2.6, 2.3, 2.2], [2.1, 1.9], [3.9, 0.4, 0.6], [1.0, 0.807, 0.585]),
     // From the right: large and less warm, opens the shadows.
-    soft_box([3.5, 1.0, 1.2], [1.8, 2.2], [1.15, 0.35, 0.7], [1.0, 0.895, 0.775]),
+    soft_box([3.5, 1.0, 1.2], [1.8, 2.2], [1.12, 0.35, 0.7], [1.0, 0.887, 0.757]),
     // Above, a little behind: draws the upper edges.
-    soft_box([0.3, 3.8, -1.2], [2.4, 1.0], [2.35, 0.5, 0.3], [1.0, 0.89, 0.77]),
+    soft_box([0.3, 3.8, -1.2], [2.4, 1.0], [2.3, 0.5, 0.3], [1.0, 0.88, 0.75]),
     // Behind on the right, narrow and white.
-    soft_box([2.9, 1.2, -2.6], [0.5, 2.2], [4.6, 0.5, 0.2], [0.95, 0.95, 0.97]),
+    soft_box([2.9, 1.2, -2.6], [0.5, 2.2], [4.3, 0.5, 0.2], [0.96, 0.95, 0.96]),
     // Behind on the left, narrow and warm.
-    soft_box([-3.4, 0.9, -2.0], [0.4, 2.0], [3.3, 0.5, 0.2], [1.0, 0.82, 0.62]),
+    soft_box([-3.4, 0.9, -2.0], [0.4, 2.0], [3.2, 0.5, 0.2], [1.0, 0.81, 0.6]),
 ];
 
 /// Dim, so that the lamps alone shape the object.

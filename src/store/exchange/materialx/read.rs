@@ -16,7 +16,7 @@ use crate::document::{ImportLobe, MaterialSettings, PARAMETERS, Parameter, UserT
 use crate::import::{FileParameter, Goes};
 use crate::optics::fresnel::Fresnel;
 use crate::scene::Loading;
-use crate::scene::texture::{TextureChannel, TextureTarget, UserTexture};
+use crate::scene::texture::{SHIPPED, TextureChannel, TextureTarget, UserTexture};
 use crate::store::exchange::report::Entry;
 use crate::store::exchange::surface::Surface;
 use crate::store::exchange::{ExchangeError, ReadOptions, Subject, carried, xml};
@@ -93,7 +93,9 @@ fn exact_or_shown(
         if has_all && shown.is_some_and(|shown| is_near(&shown, surface)) {
             // The copies lie beside the file, wherever that is now.
             for (target, texture) in surface.user_textures.iter() {
-                if let Some(own) = exact.user_textures.get_mut(target) {
+                if let Some(own) = exact.user_textures.get_mut(target)
+                    && !own.file.starts_with(SHIPPED)
+                {
                     own.file.clone_from(&texture.file);
                 }
             }
