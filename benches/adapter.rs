@@ -6,22 +6,25 @@
 
 mod bumpy;
 
-use std::hint::black_box;
-use std::time::{Duration, Instant};
+use std::{hint::black_box, time::Duration, time::Instant};
 
 use bumpy::bumpy_sphere;
 use bytemuck::Zeroable;
-use glossmith::analysis::adaptive::{Round, next_goals};
-use glossmith::analysis::noise::noise;
-use glossmith::document::{AreaLight, Document, ViewSettings};
-use glossmith::gpu::budget::{Budget, DISPATCH, DISPATCH_SOFTWARE};
-use glossmith::gpu::layout::{PixelColors, PixelStatistics, Tile};
-use glossmith::gpu::{FLUSH_SAMPLES, merge_sums};
-use glossmith::job::film::Film;
-use glossmith::job::tiles::{Order, Schedule, SliceLimits, TileGrid};
-use glossmith::render::display::display;
-use glossmith::render::{EngineChoice, Session};
-use glossmith::scene::{Model, ModelSource, Slot};
+use glossmith::{
+    analysis::adaptive::{Round, next_goals},
+    analysis::noise::noise,
+    document::{AreaLight, Document, ViewSettings},
+    gpu::{
+        FLUSH_SAMPLES,
+        budget::{Budget, DISPATCH, DISPATCH_SOFTWARE},
+        layout::{PixelColors, PixelStatistics, Tile},
+        merge_sums,
+    },
+    job::film::Film,
+    job::tiles::{Order, Schedule, SliceLimits, TileGrid},
+    render::{EngineChoice, Session, display::display},
+    scene::{Model, ModelSource, Slot},
+};
 
 /// The model's rate in samples per second, and its times in seconds.
 const RATE: f64 = 1e9;

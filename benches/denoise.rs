@@ -13,21 +13,21 @@
 //! `quick` does the same small; the beginning of a scene's name takes that scene alone; `side=`, `renders=`, `reference=`,
 //! `samples=` change the extent. The processor's engine.
 
-use std::path::Path;
-use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::{path::Path, sync::Arc, time::Duration, time::Instant};
 
-use glossmith::analysis::error::RELATIVE_FLOOR;
-use glossmith::analysis::halves::{Distance, Halves};
-use glossmith::document::{Denoise, Document, assign};
-use glossmith::job::film::{Film, HalfSums, Image};
-use glossmith::optics::random::{Sequence, random_pair, random_state};
-use glossmith::render::denoise::{Denoiser, Noisy};
-use glossmith::render::worker::{Pace, Picture, Worker};
-use glossmith::render::{EngineChoice, Session};
-use glossmith::scene::ModelSource;
-use glossmith::scene::environment::EnvironmentSource;
-use glossmith::scene::texture::{TextureTarget, UserTexture};
+use glossmith::{
+    analysis::{error::RELATIVE_FLOOR, halves::Distance, halves::Halves},
+    document::{Denoise, Document, assign},
+    job::film::{Film, HalfSums, Image},
+    optics::random::{Sequence, random_pair, random_state},
+    render::{
+        EngineChoice, Session,
+        denoise::Denoiser,
+        denoise::Noisy,
+        worker::{Pace, Picture, Worker},
+    },
+    scene::{ModelSource, environment::EnvironmentSource, texture::TextureTarget, texture::UserTexture},
+};
 use image::{Luma, Rgb};
 
 type Failure = Box<dyn std::error::Error>;

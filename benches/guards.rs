@@ -5,24 +5,25 @@
 
 mod compressed;
 
-use std::hint::black_box;
-use std::time::{Duration, Instant};
+use std::{hint::black_box, time::Duration, time::Instant};
 
 use compressed::CompressedRays;
 use glam::Vec3A;
-use glossmith::cpu::integrator::is_sound;
-use glossmith::document::Document;
-use glossmith::job::film::Film;
-use glossmith::optics::fresnel::{fresnel_conductor, half_vector_cosine};
-use glossmith::optics::numeric::normalize_or;
-use glossmith::optics::random::hash_bits;
-use glossmith::optics::vector::{Vec3, vec3};
-use glossmith::optics::warp::uniform_sphere;
-use glossmith::render::{EngineChoice, Session, SessionError};
-use glossmith::scene::surface::position_error;
-use glossmith::scene::{Geometry, Model, RayFrame, intersect_triangle, teapot, triangle_normal};
-use obvhs::cwbvh::CwBvh;
-use obvhs::ray::{Ray, RayHit};
+use glossmith::{
+    cpu::integrator::is_sound,
+    document::Document,
+    job::film::Film,
+    optics::{
+        fresnel::{fresnel_conductor, half_vector_cosine},
+        numeric::normalize_or,
+        random::hash_bits,
+        vector::{Vec3, vec3},
+        warp::uniform_sphere,
+    },
+    render::{EngineChoice, Session, SessionError},
+    scene::{Geometry, Model, RayFrame, intersect_triangle, surface::position_error, teapot, triangle_normal},
+};
+use obvhs::{cwbvh::CwBvh, ray::Ray, ray::RayHit};
 
 /// Turns of each pair.
 const TURNS: usize = 31;

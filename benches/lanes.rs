@@ -5,23 +5,25 @@
 //! function that is not inlined into code compiled for the lanes' instructions falls out of lanes: it stays right and costs
 //! ten times as much. So a stage that is not at least [`RATIO_MIN`] times as fast in lanes is named, and the benchmark fails.
 
-use std::hint::black_box;
-use std::process::ExitCode;
-use std::time::Instant;
+use std::{hint::black_box, process::ExitCode, time::Instant};
 
 use fearless_simd::Level;
-use glossmith::import::environment::load;
-use glossmith::instructions::Instructions;
-use glossmith::optics::curve::Curve;
-use glossmith::optics::frame::frame_from_normal;
-use glossmith::optics::fresnel::fresnel_conductor;
-use glossmith::optics::lanes::{InLanes, in_lanes};
-use glossmith::optics::lobe::{Horizon, Lobe, LobeShape, lobe_evaluate, lobe_sample};
-use glossmith::optics::random::{Sequence, random_pairs};
-use glossmith::optics::real::{Real, Scalar};
-use glossmith::optics::vector::{Vec3, vec3};
-use glossmith::scene::environment::{
-    Environment, EnvironmentSource, environment_density, environment_radiance, environment_sample,
+use glossmith::{
+    import::environment::load,
+    instructions::Instructions,
+    optics::{
+        curve::Curve,
+        frame::frame_from_normal,
+        fresnel::fresnel_conductor,
+        lanes::{InLanes, in_lanes},
+        lobe::{Horizon, Lobe, LobeShape, lobe_evaluate, lobe_sample},
+        random::{Sequence, random_pairs},
+        real::{Real, Scalar},
+        vector::{Vec3, vec3},
+    },
+    scene::environment::{
+        Environment, EnvironmentSource, environment_density, environment_radiance, environment_sample,
+    },
 };
 
 /// Samples of a turn.

@@ -9,11 +9,12 @@ mod bumpy;
 use std::time::{Duration, Instant};
 
 use bumpy::bumpy_sphere;
-use glossmith::document::{AreaLight, Document};
-use glossmith::render::EngineChoice;
-use glossmith::render::worker::{Activity, Pace, Worker};
-use glossmith::scene::environment::EnvironmentSource;
-use glossmith::scene::{Model, ModelSource, Slot};
+use glossmith::{
+    document::{AreaLight, Document},
+    render::EngineChoice,
+    render::worker::{Activity, Pace, Worker},
+    scene::{Model, ModelSource, Slot, environment::EnvironmentSource},
+};
 
 /// Viewport of a window of 1440 × 900, in pixels.
 const VIEWPORT: [u32; 2] = [806, 780];

@@ -10,14 +10,15 @@
 
 use std::time::Duration;
 
-use glossmith::analysis::noise::noise;
-use glossmith::document::{AreaLight, Document};
-use glossmith::job::film::Film;
-use glossmith::optics::random::Sequence;
-use glossmith::render::{EngineChoice, Progress, Session};
-use glossmith::scene::ModelSource;
-use glossmith::scene::environment::EnvironmentSource;
-use glossmith::store::preset;
+use glossmith::{
+    analysis::noise::noise,
+    document::{AreaLight, Document},
+    job::film::Film,
+    optics::random::Sequence,
+    render::{EngineChoice, Progress, Session},
+    scene::{ModelSource, environment::EnvironmentSource},
+    store::preset,
+};
 
 type Failure = Box<dyn std::error::Error>;
 

@@ -11,17 +11,16 @@
 //! run by `scripts/peers`, with the Python that `scripts/setup test` installs; where it is not there, a line says so and
 //! only Glossmith is measured.
 
-use std::error::Error;
-use std::path::{Path, PathBuf};
-use std::process::Command;
-use std::time::{Duration, Instant};
+use std::{error::Error, path::Path, path::PathBuf, process::Command, time::Duration, time::Instant};
 
-use glossmith::analysis::error::{RELATIVE_FLOOR, relative_mean_squared_error};
-use glossmith::document::Document;
-use glossmith::job::film::Image;
-use glossmith::render::{EngineChoice, Session};
-use glossmith::study::benchmark::GOAL;
-use glossmith::study::benchmark::scene::{DEPTH, EYE, FOV_DEG, GOLD, Scene, TARGET};
+use glossmith::{
+    analysis::error::{RELATIVE_FLOOR, relative_mean_squared_error},
+    document::Document,
+    job::film::Image,
+    render::{EngineChoice, Session},
+    study::benchmark::GOAL,
+    study::benchmark::scene::{DEPTH, EYE, FOV_DEG, GOLD, Scene, TARGET},
+};
 use serde_json::{Value, json};
 
 /// Linear RGB of its pixels.

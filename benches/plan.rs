@@ -7,14 +7,15 @@
 
 use std::time::{Duration, Instant};
 
-use glossmith::document::Document;
-use glossmith::document::effect::{EffectSwitches, Switch};
-use glossmith::job::effect::EffectId;
-use glossmith::render::{EngineChoice, Session};
-use glossmith::scene::ModelSource;
-use glossmith::scene::environment::EnvironmentSource;
-use glossmith::store::PRESETS;
-use glossmith::study::ledger::{LedgerOptions, ledger};
+use glossmith::{
+    document::Document,
+    document::effect::{EffectSwitches, Switch},
+    job::effect::EffectId,
+    render::{EngineChoice, Session},
+    scene::{ModelSource, environment::EnvironmentSource},
+    store::PRESETS,
+    study::ledger::{LedgerOptions, ledger},
+};
 
 #[path = "../tests/suite/random_documents.rs"]
 mod random_documents;

@@ -6,16 +6,19 @@
 
 mod compressed;
 
-use std::hint::black_box;
-use std::time::{Duration, Instant};
+use std::{hint::black_box, time::Duration, time::Instant};
 
 use compressed::CompressedRays;
 use fearless_simd::Level;
-use glossmith::instructions::Instructions;
-use glossmith::optics::random::{Sequence, random_pair, random_state};
-use glossmith::optics::vector::{Vec3, vec3};
-use glossmith::optics::warp::uniform_sphere;
-use glossmith::scene::{Geometry, Model, PACKET, Packet, teapot};
+use glossmith::{
+    instructions::Instructions,
+    optics::{
+        random::{Sequence, random_pair, random_state},
+        vector::{Vec3, vec3},
+        warp::uniform_sphere,
+    },
+    scene::{Geometry, Model, PACKET, Packet, teapot},
+};
 
 /// Rays of a kind.
 const COUNT: u32 = 100_000;

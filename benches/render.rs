@@ -3,17 +3,19 @@
 //! `cargo bench --bench render`. The scene of issue and design: 512 × 512, a teapot of about 40 000 triangles that fills
 //! the frame, metal, 6 bounces, studio light.
 
-use std::hint::black_box;
-use std::time::{Duration, Instant};
+use std::{hint::black_box, time::Duration, time::Instant};
 
-use glossmith::document::{Document, Strategy};
-use glossmith::job::scatter::ScatterRequest;
-use glossmith::optics::curve::Curve;
-use glossmith::optics::lobe::model::LobeModel;
-use glossmith::optics::lobe::{Horizon, Lobe, raw_density, raw_sample};
-use glossmith::optics::random::{Sequence, random_pair, random_state};
-use glossmith::render::{EngineChoice, Session};
-use glossmith::scene::environment::EnvironmentSource;
+use glossmith::{
+    document::{Document, Strategy},
+    job::scatter::ScatterRequest,
+    optics::{
+        curve::Curve,
+        lobe::{Horizon, Lobe, model::LobeModel, raw_density, raw_sample},
+        random::{Sequence, random_pair, random_state},
+    },
+    render::{EngineChoice, Session},
+    scene::environment::EnvironmentSource,
+};
 
 /// How long each case is measured.
 const DURATION: Duration = Duration::from_secs(3);

@@ -7,15 +7,18 @@
 
 use std::time::{Duration, Instant};
 
-use glossmith::document::{AreaLight, Document, Strategy};
-use glossmith::optics::curve::Curve;
-use glossmith::optics::frame::frame_from_normal;
-use glossmith::optics::lobe::{Horizon, Lobe, LobeShape, raw_sample};
-use glossmith::optics::random::{Sequence, random_pair, random_state};
-use glossmith::optics::vector::{Vec3, vec3};
-use glossmith::render::{EngineChoice, Session};
-use glossmith::scene::ModelSource;
-use glossmith::scene::environment::EnvironmentSource;
+use glossmith::{
+    document::{AreaLight, Document, Strategy},
+    optics::{
+        curve::Curve,
+        frame::frame_from_normal,
+        lobe::{Horizon, Lobe, LobeShape, raw_sample},
+        random::{Sequence, random_pair, random_state},
+        vector::{Vec3, vec3},
+    },
+    render::{EngineChoice, Session},
+    scene::{ModelSource, environment::EnvironmentSource},
+};
 use rayon::prelude::*;
 
 /// Image and directions a pixel, as in the paper; the image of `quick`.

@@ -4,13 +4,14 @@
 //! each strategy the relative mean squared error against a long render, after the same time on the CPU engine.
 //! Strategies take turns, so that whatever else the machine does meets all of them.
 
-use std::path::PathBuf;
-use std::time::Duration;
+use std::{path::PathBuf, time::Duration};
 
-use glossmith::analysis::error::relative_mean_squared_error;
-use glossmith::document::{Background, Document, Strategy};
-use glossmith::render::{EngineChoice, Session};
-use glossmith::scene::environment::EnvironmentSource;
+use glossmith::{
+    analysis::error::relative_mean_squared_error,
+    document::{Background, Document, Strategy},
+    render::{EngineChoice, Session},
+    scene::environment::EnvironmentSource,
+};
 
 /// How long each strategy renders, how often, and how long the reference does.
 const DURATION: Duration = Duration::from_secs(2);

@@ -3,12 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
-use glossmith::document::Document;
-use glossmith::import::load;
-use glossmith::scene::environment::EnvironmentSource;
-use glossmith::scene::{Geometry, ModelSource};
-use glossmith::store::exchange::{self, ReadOptions};
-use glossmith::store::{load_document, load_material, opened};
+use glossmith::{document::Document, import::load, scene::{environment::EnvironmentSource, Geometry, ModelSource}, store::{exchange::ReadOptions, exchange, load_document, load_material, opened},};
 
 /// Kinds of files.
 #[allow(dead_code)]

@@ -4,9 +4,7 @@
 //! reports it at the end.
 
 use crate::panics::lock;
-use std::fmt;
-use std::io::{self, ErrorKind, Write as _};
-use std::sync::Mutex;
+use std::{fmt, io, io::ErrorKind, io::Write as _, sync::Mutex};
 
 /// What became of standard output, where it failed.
 static FAILED: Mutex<Option<io::Error>> = Mutex::new(None);

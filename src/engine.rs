@@ -1,8 +1,7 @@
-//! What Glossmith computes, a package of its own (`src/engine/Cargo.toml`), so that it is compiled at full optimisation and
-//! the rest is not, and that a change of the window does not compile it again.
+//! What Glossmith computes, a package of its own (`src/engine/Cargo.toml`), so that its kernels are compiled in one piece,
+//! and not again when anything else changes.
 //!
-//! The modules, in the order in which they may use each other:
-//! [`optics`] ← [`scene`] ← [`job`] ← [`cpu`], [`gpu`], [`analysis`].
+//! The modules, in the order in which they may use each other: [`optics`] ← [`scene`] ← [`job`] ← [`analysis`], [`cpu`].
 
 pub mod named;
 pub mod panics;
@@ -16,6 +15,5 @@ pub mod scene;
 pub mod job;
 
 pub mod cpu;
-pub mod gpu;
 
 pub mod analysis;

@@ -2,13 +2,10 @@
 
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 
-use std::io::{self, Write as _};
-use std::process::ExitCode;
-use std::time::{Duration, SystemTime};
+use std::{io, io::Write as _, process::ExitCode, time::Duration, time::SystemTime};
 
 use anyhow::Context as _;
-use glossmith::cli::Arguments;
-use glossmith::console;
+use glossmith::{cli::Arguments, console};
 
 #[cfg(feature = "window")]
 macro_rules! pages {

@@ -1,9 +1,11 @@
 //! Panics that are caught: what they said, and which of them are known and no news.
 
-use std::any::Any;
-use std::cell::Cell;
-use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::{
+    any::Any,
+    cell::Cell,
+    panic::{AssertUnwindSafe, catch_unwind},
+    sync::{Mutex, MutexGuard, PoisonError},
+};
 
 thread_local! {
     static IS_CONTAINED: Cell<bool> = const { Cell::new(false) };

@@ -1,7 +1,6 @@
 //! Parallel loops, all through one function that is not generic: a loop of rayon's is some 6700 lines of LLVM code each.
 
-use std::ops::Range;
-use std::sync::{Mutex, PoisonError};
+use std::{ops::Range, sync::Mutex, sync::PoisonError};
 
 use rayon::prelude::*;
 

@@ -1,8 +1,7 @@
 //! A model of any number of triangles.
 
 use glam::DVec3;
-use glossmith::scene::mesh::Mesh;
-use glossmith::scene::shapes::sphere;
+use glossmith::scene::{mesh::Mesh, shapes::sphere};
 
 /// Bumps per unit of length, as an angle, and their height.
 const BUMPS: f64 = 9.0;

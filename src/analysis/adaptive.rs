@@ -6,8 +6,7 @@
 //! many.
 
 use super::noise::{TileError, finite_sum, half_difference_variance, tile_errors};
-use crate::job::film::Film;
-use crate::job::tiles::TileGrid;
+use crate::job::{film::Film, tiles::TileGrid};
 
 /// A tile counts with at least this part of a neighbour's variance: the edge of a small bright feature does not starve.
 const NEIGHBOUR_SHARE: f64 = 0.25;

@@ -6,10 +6,8 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::gamma::upper_share;
-use super::quadrature::{Patch, SphereFunction};
-use crate::optics::frame::{Frame, local_from_world};
-use crate::optics::vector::Vec3;
+use super::{gamma::upper_share, quadrature::Patch, quadrature::SphereFunction};
+use crate::optics::{frame::Frame, frame::local_from_world, vector::Vec3};
 
 /// Cells with a smaller expectation are pooled: below it the counts are not nearly normal.
 pub const EXPECTATION_MIN: f64 = 5.0;

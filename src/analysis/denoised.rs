@@ -19,9 +19,11 @@ use moments::Moments;
 
 use super::halves::Distance;
 use super::noise::{BAND, MAP_RADIUS, bands, box_sums};
-use crate::job::film::luminance;
-use crate::job::tiles::{TILE_SIDE, TileGrid};
-use crate::parallel;
+use crate::{
+    job::film::luminance,
+    job::tiles::{TILE_SIDE, TileGrid},
+    parallel,
+};
 
 /// Radius in tiles over which a tile's errors are averaged to choose its blend.
 const RADIUS: usize = 2;

@@ -2,8 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use crate::optics::frame::{Frame, world_from_local};
-use crate::optics::vector::{Vec3, vec3};
+use crate::optics::{frame::Frame, frame::world_from_local, vector::Vec3, vector::vec3};
 
 /// Counts in equal bins over an interval.
 #[derive(Clone, Debug, PartialEq)]

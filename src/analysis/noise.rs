@@ -8,9 +8,11 @@
 
 use std::ops::Range;
 
-use crate::job::film::{Film, HalfSums};
-use crate::job::tiles::TileGrid;
-use crate::parallel;
+use crate::{
+    job::film::{Film, HalfSums},
+    job::tiles::TileGrid,
+    parallel,
+};
 
 /// Half width of a normal distribution's 95 % interval, in standard deviations.
 pub(super) const BAND: f64 = 1.959_964;

@@ -5,8 +5,11 @@
 use std::f64::consts::{PI, TAU};
 use std::sync::LazyLock;
 
-use crate::optics::frame::{Frame, local_from_world, world_from_local};
-use crate::optics::vector::{Vec3, vec3};
+use crate::optics::{
+    frame::{Frame, local_from_world, world_from_local},
+    vector::Vec3,
+    vector::vec3,
+};
 
 /// Maximum depth of patch subdivision.
 const DEPTH_MAX: u32 = 9;

@@ -1,8 +1,10 @@
 //! Quadrature over directions, adapted to lobes: the pole on the mirror direction, narrow rings where the lobe is large.
 
-use crate::optics::lobe::model::{NORMAL, view_direction};
-use crate::optics::vector::{Vec3, vec3};
-use crate::parallel;
+use crate::{
+    optics::lobe::model::{NORMAL, view_direction},
+    optics::vector::{Vec3, vec3},
+    parallel,
+};
 
 /// Side of the surface to integrate over.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

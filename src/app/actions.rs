@@ -4,18 +4,15 @@ use std::path::PathBuf;
 
 use egui::{Key, KeyboardShortcut, Modifiers};
 
-use crate::app::kit::keys;
-use crate::app::pane::Pane;
-use crate::app::services::compare::Rival;
-use crate::app::services::library::Change;
-use crate::app::services::workspaces;
-use crate::document::{ImportLobe, MaterialSettings};
-use crate::named::named;
-use crate::render::EngineChoice;
-use crate::render::shown::Shown;
-use crate::scene::environment::EnvironmentSource;
-use crate::scene::texture::TextureTarget;
-use crate::scene::{ModelOptions, ModelSource};
+use crate::{
+    document::{ImportLobe, MaterialSettings},
+    kit::keys,
+    named::named,
+    pane::Pane,
+    render::{EngineChoice, shown::Shown},
+    scene::{ModelOptions, ModelSource, environment::EnvironmentSource, texture::TextureTarget},
+    services::{compare::Rival, library::Change, workspaces},
+};
 
 /// Something for the app to do after the panels have been shown.
 #[derive(Clone, Debug, PartialEq)]

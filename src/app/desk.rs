@@ -4,27 +4,33 @@ use std::path::{Path, PathBuf};
 
 use egui::{Response, Ui};
 
-use crate::app::actions::{Action, Command};
-use crate::app::kit::icons::{self, Icon};
-use crate::app::kit::parameter_row;
-use crate::app::kit::widgets::{self, Name, NumberStyle};
-use crate::app::services::compare::Compare;
-use crate::app::services::edits::Edits;
-use crate::app::services::library::{Library, Snapshots};
-use crate::app::services::look::Look;
-use crate::app::services::messages::Entry;
-use crate::app::services::pictures::Pictures;
-use crate::app::services::recent::Recent;
-use crate::app::services::reference::ReferenceImage;
-use crate::app::services::selection::{Selection, Thing};
-use crate::app::services::shelves::Shelves;
-use crate::app::services::viewing::{Pick, Rendering, Viewing};
-use crate::document::{Document, ImportLobe, MaterialSettings, PARAMETERS, Parameter, SETTINGS, setting};
-use crate::render::queue::Queue;
-use crate::render::worker::{Scene, Snapshot};
-use crate::scene::environment::{BUILT_IN, BuiltIn, EnvironmentSource};
-use crate::scene::path_text::file_name;
-use crate::scene::texture::TextureTarget;
+use crate::{
+    actions::Action,
+    actions::Command,
+    document::{Document, ImportLobe, MaterialSettings, PARAMETERS, Parameter, SETTINGS, setting},
+    kit::{icons, icons::Icon, parameter_row, widgets, widgets::Name, widgets::NumberStyle},
+    render::{queue::Queue, worker::Scene, worker::Snapshot},
+    scene::{
+        environment::{BUILT_IN, BuiltIn, EnvironmentSource},
+        path_text::file_name,
+        texture::TextureTarget,
+    },
+    services::{
+        compare::Compare,
+        edits::Edits,
+        library::Library,
+        library::Snapshots,
+        look::Look,
+        messages::Entry,
+        pictures::Pictures,
+        recent::Recent,
+        reference::ReferenceImage,
+        selection::Selection,
+        selection::Thing,
+        shelves::Shelves,
+        viewing::{Pick, Rendering, Viewing},
+    },
+};
 
 /// What panels work on.
 pub struct Desk<'a> {

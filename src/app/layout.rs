@@ -6,14 +6,10 @@ use egui_tiles::{
     Tree, UiResponse,
 };
 
-use crate::app::actions::Action;
-use crate::app::desk::Desk;
-use crate::app::kit::theme;
-use crate::app::pane::Home;
-pub use crate::app::pane::Pane;
-use crate::app::panels::Panels;
-use crate::app::sheets::book::help_button;
-use crate::app::viewport::Viewport;
+pub use crate::pane::Pane;
+use crate::{
+    actions::Action, desk::Desk, kit::theme, pane::Home, panels::Panels, sheets::book::help_button, viewport::Viewport,
+};
 
 /// Shares of the window's width: at 1366 points all tabs fit.
 const LEFT_SHARE: f32 = 0.205;

@@ -2,10 +2,12 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::document::{AreaLight, range};
-use crate::named::named;
-use crate::optics::vector::Vec3;
-use crate::scene::camera::{Camera, camera_ray};
+use crate::{
+    document::{AreaLight, range},
+    named::named,
+    optics::vector::Vec3,
+    scene::camera::{Camera, camera_ray},
+};
 
 /// How a scene is seen in an image of this size.
 #[derive(Clone, Copy, Debug)]

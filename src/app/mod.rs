@@ -4,6 +4,13 @@
 //! which change the document or push actions; then actions are applied, the edit is recorded, and a document that
 //! differs from the one last submitted is submitted.
 
+#![deny(clippy::print_stdout, clippy::print_stderr)]
+
+use glossmith_engine::{analysis, job, named, optics, panics, scene};
+use glossmith_files::{document, in_words, matching, plot, store};
+use glossmith_import as import;
+use glossmith_session::{render, study};
+
 pub mod actions;
 pub mod book;
 mod desk;
@@ -11,19 +18,16 @@ mod handlers;
 mod kit;
 pub mod layout;
 mod lights;
+mod measuring;
 mod pane;
 mod panels;
 mod services;
 mod settings;
 mod sheets;
-mod study;
 mod viewport;
 pub mod workspaces;
 
-use std::io;
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::{io, path::Path, path::PathBuf, sync::Arc, time::Duration, time::Instant};
 
 use egui::Ui;
 use egui_tiles::Tree;
@@ -34,35 +38,35 @@ use handlers::models::{self, ENVIRONMENT_CHANGED};
 use kit::{keys, theme};
 use layout::Pane;
 use panels::Panels;
-use services::autosave::{self, Autosave, Leftover};
-pub use services::crash::report_panics;
-use services::edits::Edits;
-use services::library::{Change, Folder};
-use services::messages::{self, Entry};
-use services::pictures::Pictures;
-use services::recent::Recent;
-use services::selection::Selection;
-pub use services::viewing::Resolution;
-use services::viewing::{Rendering, Viewing};
-pub use services::{compare, library};
-use sheets::book::Manual;
-use sheets::dialogs::Dialogs;
-use sheets::export::ExportSheet;
-use sheets::menu::{self, Sheet};
-use sheets::status;
-use sheets::turntable::TurntableSheet;
-use sheets::unsaved::Unsaved;
+use services::{
+    autosave::{self, Autosave, Leftover},
+    edits::Edits,
+    library::{Change, Folder},
+    messages,
+    messages::Entry,
+    pictures::Pictures,
+    recent::Recent,
+    selection::Selection,
+    viewing::{Rendering, Viewing},
+};
+pub use services::{compare, crash::report_panics, library, viewing::Resolution};
+use sheets::{
+    book::Manual, dialogs::Dialogs, export::ExportSheet, menu, menu::Sheet, status, turntable::TurntableSheet,
+    unsaved::Unsaved,
+};
 use viewport::Viewport;
 use workspaces::Workspaces;
 
-use crate::document::of_model::import_report;
-use crate::document::{Denoise, Document, MaterialSettings};
-use crate::render::EngineChoice;
-use crate::render::queue::Queue;
-use crate::render::worker::{Activity, Event, Level, Scene, Snapshot, Worker};
-use crate::scene::ModelSource;
-use crate::scene::environment::EnvironmentSource;
-use crate::store::examples::still_life;
+use crate::{
+    document::{Denoise, Document, MaterialSettings, of_model::import_report},
+    render::{
+        EngineChoice,
+        queue::Queue,
+        worker::{Activity, Event, Level, Scene, Snapshot, Worker},
+    },
+    scene::{ModelSource, environment::EnvironmentSource},
+    store::examples::still_life,
+};
 
 /// A finished image that has cost this much time keeps its size while nothing but the viewport's size changes.
 const KEPT_FROM: Duration = Duration::from_secs(10);

@@ -1,18 +1,17 @@
 //! What the window is opened with, and what is remembered from one start to the next.
 
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::{path::Path, path::PathBuf, sync::Arc};
 
 use egui::ThemePreference;
 use serde::{Deserialize, Serialize};
 
-use crate::app::services::shelves::KeptShelves;
-use crate::app::services::viewing::Resolution;
-use crate::app::workspaces::Workspaces;
-use crate::document::{Denoise, ImportLobe};
-use crate::import::limits;
-use crate::render::EngineChoice;
-use crate::render::denoise::Library;
+use crate::{
+    document::{Denoise, ImportLobe},
+    import::limits,
+    render::{EngineChoice, denoise::Library},
+    services::{shelves::KeptShelves, viewing::Resolution},
+    workspaces::Workspaces,
+};
 
 /// Under which the window's state is stored.
 const KEY: &str = "editor";

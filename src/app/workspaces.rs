@@ -3,9 +3,8 @@
 use egui_tiles::Tree;
 use serde::{Deserialize, Serialize};
 
-use crate::app::layout::{self, Pane};
-use crate::app::services::workspaces::is_built_in;
-pub use crate::app::services::workspaces::{Change, LOOK, MEASURE};
+pub use crate::services::workspaces::{Change, LOOK, MEASURE};
+use crate::{layout, layout::Pane, services::workspaces::is_built_in};
 
 /// Longest name of a workspace, characters: a row of them fits beside the menus.
 const NAME_MAX: usize = 16;

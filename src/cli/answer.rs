@@ -1,18 +1,12 @@
 //! Where a command's answer goes: a file, or standard output for the program that called.
 
-use std::borrow::Cow;
-use std::ffi::OsString;
-use std::fs::{File, OpenOptions};
-use std::io::Write as _;
-use std::path::{Path, PathBuf};
+use std::{borrow::Cow, ffi::OsString, fs::File, fs::OpenOptions, io::Write as _, path::Path, path::PathBuf};
 
 use anyhow::Context;
 use clap::Args;
 use serde::Serialize;
 
-use crate::console::output;
-use crate::scene::path_text::path_text;
-use crate::store::replace::save_atomically;
+use crate::{console::output, scene::path_text::path_text, store::replace::save_atomically};
 
 /// Where an answer goes.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -5,13 +5,12 @@ use std::path::PathBuf;
 use anyhow::bail;
 use clap::Args;
 
-use super::answer::Answer;
-use super::study::watched;
-use crate::console::output;
-use crate::render::EngineChoice;
-use crate::study::benchmark::compare::compare;
-use crate::study::benchmark::report::Report;
-use crate::study::benchmark::{BenchmarkOptions, SECONDS, benchmark};
+use super::{answer::Answer, study::watched};
+use crate::{
+    console::output,
+    render::EngineChoice,
+    study::benchmark::{BenchmarkOptions, SECONDS, benchmark, compare::compare, report::Report},
+};
 
 /// Arguments of `glossmith benchmark`.
 #[derive(Debug, Args)]

@@ -1,20 +1,19 @@
 //! `glossmith check`: proof on the user's own machine.
 
-use std::cell::RefCell;
-use std::path::PathBuf;
-use std::sync::atomic::AtomicBool;
+use std::{cell::RefCell, path::PathBuf, sync::atomic::AtomicBool};
 
 use anyhow::bail;
 use clap::Args;
 
-use super::answer::Answer;
-use super::parse::check_writable;
-use crate::console::{message, output};
-use crate::document::parameter::nearest;
-use crate::render::{EngineChoice, EngineInfo, EngineKind};
-use crate::store::replace::save_atomically;
-use crate::study::check::{Check, CheckOptions, GroupSummary, run as run_checks, summaries};
-use crate::study::hard::{self, HardOptions, HardRow};
+use super::{answer::Answer, parse::check_writable};
+use crate::{
+    console::{message, output},
+    document::parameter::nearest,
+    render::{EngineChoice, EngineInfo, EngineKind},
+    store::replace::save_atomically,
+    study::check::{Check, CheckOptions, GroupSummary, run as run_checks, summaries},
+    study::hard::{self, HardOptions, HardRow},
+};
 
 /// Arguments of `glossmith check`.
 #[derive(Debug, Args)]

@@ -5,18 +5,19 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, bail};
 use clap::Args;
 
-use super::answer::{Destination, write_json};
-use super::names;
-use super::parse::check_writable;
-use crate::console::message;
-use crate::document::ImportLobe;
-use crate::plot::{PictureSheet, plot_file};
-use crate::render::looks::compared;
-use crate::scene::path_text::path_text;
-use crate::store::exchange::report::Report;
-use crate::store::exchange::{self, FORMATS, ReadOptions, Registered, Subject};
-use crate::store::preset;
-use crate::store::replace::save_atomically;
+use super::{answer::Destination, answer::write_json, names, parse::check_writable};
+use crate::{
+    console::message,
+    document::ImportLobe,
+    plot::{PictureSheet, plot_file},
+    render::looks::compared,
+    scene::path_text::path_text,
+    store::{
+        exchange::{self, FORMATS, ReadOptions, Registered, Subject, report::Report},
+        preset,
+        replace::save_atomically,
+    },
+};
 
 /// Arguments of `glossmith convert`.
 #[derive(Debug, Args)]

@@ -3,9 +3,7 @@
 use anyhow::{Context, bail};
 use clap::Args;
 
-use super::answer::Answer;
-use super::parse;
-use super::scene::SceneArguments;
+use super::{answer::Answer, parse, scene::SceneArguments};
 use crate::console;
 use crate::study::explain::{PathAccount, explain};
 

@@ -1,24 +1,26 @@
 //! `glossmith fit`: a material that looks like another lobe or like a measured one.
 
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::{path::Path, path::PathBuf, sync::Arc};
 
 use clap::Args;
 
-use super::answer::{Answer, file_names};
-use super::lobe::{check_ending, write_view};
-use super::lobe_spec::lobe_model;
-use super::names;
-use super::parse::check_writable;
-use crate::analysis::fit::Merl;
-use crate::console::{message, output};
-use crate::document::MaterialSettings;
-use crate::matching::{Candidate, LookMatch, Target, comparison, match_look};
-use crate::optics::lobe::Lobe;
-use crate::optics::lobe::model::LobeModel;
-use crate::optics::vector::Vec3;
-use crate::plot::lobe_view::LobeView;
-use crate::store::save_material;
+use super::{
+    answer::{Answer, file_names},
+    lobe::{check_ending, write_view},
+    lobe_spec::lobe_model,
+    names,
+    parse::check_writable,
+};
+use crate::{
+    analysis::fit::Merl,
+    console::{message, output},
+    document::MaterialSettings,
+    matching::{Candidate, LookMatch, Target, comparison, match_look},
+    optics::lobe::{Lobe, model::LobeModel},
+    optics::vector::Vec3,
+    plot::lobe_view::LobeView,
+    store::save_material,
+};
 
 /// View angles where none is given.
 const VIEW_ANGLE_DEG: f64 = 0.0;

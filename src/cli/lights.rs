@@ -3,14 +3,15 @@
 use std::ops::RangeInclusive;
 
 use super::parse::{number_in, numbers_in};
-use crate::document::group_name::NAME_MAX;
-use crate::document::parameter::parse_color;
-use crate::document::{
-    AreaLight, AreaLightShape, GroupName, LIGHT_PARAMETERS, LightMix, Parameter, ProfileFile, range,
+use crate::{
+    document::{
+        AreaLight, AreaLightShape, GroupName, LIGHT_PARAMETERS, LightMix, Parameter, ProfileFile, group_name::NAME_MAX,
+        parameter::parse_color, range,
+    },
+    import::{light_profile, light_profile::LightProfileError},
+    optics::blackbody::{TEMPERATURES_K, blackbody_color},
+    scene::path_text::path_of_text,
 };
-use crate::import::light_profile::{self, LightProfileError};
-use crate::optics::blackbody::{TEMPERATURES_K, blackbody_color};
-use crate::scene::path_text::path_of_text;
 
 /// Luminous flux of a light in lumens, or illuminance of a sun in lux.
 const POWER: RangeInclusive<f64> = 0.0..=1e12;

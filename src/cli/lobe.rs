@@ -5,19 +5,22 @@ use std::path::{Path, PathBuf};
 use anyhow::bail;
 use clap::Args;
 
-use super::answer::{Answer, file_names};
-use super::lobe_spec::lobe_model;
-use super::names;
-use super::parse::{check_writable, number_in};
-use super::scene::material;
-use crate::console::message;
-use crate::document::ImportLobe;
-use crate::matching::lobe_of_material;
-use crate::optics::lobe::Horizon;
-use crate::optics::lobe::model::LobeModel;
-use crate::plot::lobe_view::{LobeView, ViewKind, lobe_view};
-use crate::plot::plot_file;
-use crate::store::replace::save_atomically;
+use super::{
+    answer::{Answer, file_names},
+    lobe_spec::lobe_model,
+    names,
+    parse::{check_writable, number_in},
+    scene::material,
+};
+use crate::{
+    console::message,
+    document::ImportLobe,
+    matching::lobe_of_material,
+    optics::lobe::{Horizon, model::LobeModel},
+    plot::lobe_view::{LobeView, ViewKind, lobe_view},
+    plot::plot_file,
+    store::replace::save_atomically,
+};
 
 /// Arguments of `glossmith lobe`.
 #[derive(Debug, Args)]

@@ -1,8 +1,9 @@
 //! A lobe written as one word: `ggx:0.1`, `ggx:alpha=0.01`, `geometric:0.3/sqrt`.
 
-use crate::optics::curve::Curve;
-use crate::optics::lobe::model::{LobeModel, roughness_min};
-use crate::optics::lobe::{Lobe, Width};
+use crate::{
+    optics::curve::Curve,
+    optics::lobe::{Lobe, Width, model::LobeModel, model::roughness_min},
+};
 
 use super::names::choice;
 

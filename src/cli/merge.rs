@@ -5,14 +5,16 @@ use std::path::PathBuf;
 use anyhow::bail;
 use clap::Args;
 
-use super::answer::{Answer, file_names};
-use super::render::{add_denoised, check_takes, rendered, report_written, write_pictures};
-use super::{names, parse};
-use crate::console::message;
-use crate::document::Denoise;
-use crate::render::denoise::{Denoised, Denoiser};
-use crate::render::output::{Layers, Rendered};
-use crate::render::sums::KeptFilm;
+use super::{
+    answer::{Answer, file_names},
+    names, parse,
+    render::{add_denoised, check_takes, rendered, report_written, write_pictures},
+};
+use crate::{
+    console::message,
+    document::Denoise,
+    render::{denoise::Denoised, denoise::Denoiser, output::Layers, output::Rendered, sums::KeptFilm},
+};
 
 /// Arguments of `glossmith merge`.
 #[derive(Debug, Args)]

@@ -29,16 +29,16 @@ mod study;
 mod textures;
 mod turntable;
 
-use std::iter;
-use std::path::PathBuf;
+use std::{iter, path::PathBuf};
 
 use clap::{Arg, CommandFactory, FromArgMatches, Parser, Subcommand};
 
-use crate::document::parameter::nearest;
-use crate::instructions::Instructions;
-use crate::render::denoise::DenoiseDevice;
-use crate::render::{EngineChoice, RayQueries};
-use crate::store::file_kind::what_is_opened;
+use crate::{
+    document::parameter::nearest,
+    instructions::Instructions,
+    render::{EngineChoice, RayQueries, denoise::DenoiseDevice},
+    store::file_kind::what_is_opened,
+};
 
 fn long_about() -> String {
     format!(
@@ -50,7 +50,7 @@ fn long_about() -> String {
 
 /// Glossmith: a material editor around the geometric lobe.
 #[derive(Debug, Parser)]
-#[command(version, long_about = long_about(), args_conflicts_with_subcommands = true, after_help = EXIT_CODES)]
+#[command(name = "glossmith", version, long_about = long_about(), args_conflicts_with_subcommands = true, after_help = EXIT_CODES)]
 pub struct Arguments {
     /// What to do instead of opening the editor.
     #[command(subcommand)]

@@ -1,21 +1,21 @@
 //! What stands behind an option on the command line: text to value, or a sentence that says what is expected.
 
-use std::convert::Infallible;
-use std::fs::OpenOptions;
-use std::ops::RangeInclusive;
-use std::path::{Path, PathBuf};
+use std::{convert::Infallible, fs::OpenOptions, ops::RangeInclusive, path::Path, path::PathBuf};
 
 use anyhow::Context;
 use clap::builder::{OsStringValueParser, PathBufValueParser, TypedValueParser};
 
-use crate::document::parameter::parse_color;
-use crate::document::{Background, Document, ParameterError, range};
-use crate::instructions::{Instructions, Missing};
-use crate::render::output::{OutputError, format_of};
-use crate::scene::ModelSource;
-use crate::scene::environment::EnvironmentEncoding;
-use crate::scene::path_text::{path_of_text, path_text};
-use crate::store::replace::check_saving;
+use crate::{
+    document::{Background, Document, ParameterError, parameter::parse_color, range},
+    instructions::{Instructions, Missing},
+    render::output::{OutputError, format_of},
+    scene::{
+        ModelSource,
+        environment::EnvironmentEncoding,
+        path_text::{path_of_text, path_text},
+    },
+    store::replace::check_saving,
+};
 
 /// An instruction set that this processor has.
 pub fn instructions(text: &str) -> Result<Instructions, String> {

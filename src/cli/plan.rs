@@ -3,11 +3,12 @@
 use anyhow::Context;
 use clap::Args;
 
-use super::answer::Answer;
-use super::scene::SceneArguments;
-use crate::console::output;
-use crate::job::effect::{Decision, EffectId};
-use crate::job::plan::Plan;
+use super::{answer::Answer, scene::SceneArguments};
+use crate::{
+    console::output,
+    job::effect::{Decision, EffectId},
+    job::plan::Plan,
+};
 
 /// Arguments of `glossmith plan`: those of `glossmith render` that describe the scene.
 #[derive(Debug, Args)]

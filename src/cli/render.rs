@@ -1,28 +1,32 @@
 //! `glossmith render`: a document from arguments, an image in a file.
 
-use std::fmt;
-use std::io::IsTerminal;
-use std::path::PathBuf;
-use std::time::{Duration, Instant};
+use std::{fmt, io::IsTerminal, path::PathBuf, time::Duration, time::Instant};
 
 use anyhow::bail;
 use clap::Args;
 use indicatif::{ProgressBar, ProgressState, ProgressStyle};
 
-use super::answer::{Destination, file_names, write_json};
-use super::parse;
-use super::scene::SceneArguments;
-use super::signals::Signals;
-use crate::console::message;
-use crate::document::{Denoise, Document, ViewSettings};
-use crate::job::film::Image;
-use crate::render::denoise::Denoised;
-use crate::render::display::display;
-use crate::store::examples;
-use crate::render::light_layers::LightLayer;
-use crate::render::output::{self, Format, Rendered};
-use crate::render::{EngineChoice, Progress, Session, StepDenoiser, StopReason, beyond_bounces, to_end};
-use crate::scene::Loading;
+use super::{
+    answer::{Destination, file_names, write_json},
+    parse,
+    scene::SceneArguments,
+    signals::Signals,
+};
+use crate::{
+    console::message,
+    document::{Denoise, Document, ViewSettings},
+    job::film::Image,
+    render::{
+        EngineChoice, Progress, Session, StepDenoiser, StopReason, beyond_bounces,
+        denoise::Denoised,
+        display::display,
+        light_layers::LightLayer,
+        output::{self, Format, Rendered},
+        to_end,
+    },
+    scene::Loading,
+    store::examples,
+};
 
 /// Time limit of the image that is rendered where no window can be opened, seconds.
 const DEFAULT_SCENE_SECONDS: f64 = 8.0;

@@ -1,25 +1,22 @@
 //! `glossmith scatter`: samples of a lobe as numbers or as an image.
 
-use std::io::Write as _;
-use std::path::{Path, PathBuf};
+use std::{io::Write as _, path::Path, path::PathBuf};
 
 use anyhow::bail;
-use clap::Args;
-use clap::builder::{PathBufValueParser, TypedValueParser};
+use clap::{Args, builder::PathBufValueParser, builder::TypedValueParser};
 
-use crate::console::message;
-use crate::import::endings::ending;
-use crate::job::scatter::ScatterRequest;
-use crate::optics::curve::Curve;
-use crate::optics::lobe::model::LobeModel;
-use crate::optics::lobe::{Horizon, Lobe};
-use crate::plot::{ScatterPlot, plot_file};
-use crate::render::EngineChoice;
-use crate::store::replace::{save_atomically, save_by};
+use crate::{
+    console::message,
+    import::endings::ending,
+    job::scatter::ScatterRequest,
+    optics::curve::Curve,
+    optics::lobe::{Horizon, Lobe, model::LobeModel},
+    plot::{ScatterPlot, plot_file},
+    render::EngineChoice,
+    store::replace::{save_atomically, save_by},
+};
 
-use super::answer::{Answer, file_names};
-use super::names::choice;
-use super::parse::{check_writable, number_in};
+use super::{answer::Answer, answer::file_names, names::choice, parse::check_writable, parse::number_in};
 
 /// Samples that fit in memory on any machine of today.
 const COUNT_MAX: i64 = 100_000_000;

@@ -1,27 +1,40 @@
 //! What is rendered, and how: a document from files and options.
 
-use std::path::{Path, PathBuf};
-use std::str::FromStr as _;
+use std::{path::Path, path::PathBuf, str::FromStr as _};
 
 use anyhow::bail;
 use clap::Args;
 
-use super::answer::{Destination, write_json};
-use super::lights::{self, LightArgument};
-use super::settings::SettingOptions;
-use super::textures::{self, TextureArgument};
-use super::{names, parse};
-use crate::document::effect::EffectSwitches;
-use crate::document::of_model::{import_report, lights_left_out, materials_of};
-use crate::document::{Background, Document, GroupName, ImportLobe, LightMix, MaterialSettings, ParameterError, range};
-use crate::import::is_model;
-use crate::render::{EngineChoice, Session};
-use crate::scene::environment::{EnvironmentEncoding, EnvironmentSource};
-use crate::scene::{Model, ModelOptions, ModelSource};
-use crate::store::exchange::{self, ReadOptions};
-use crate::store::file_kind::{FileKind, may_hold_document, what_is_opened};
-use crate::store::lut;
-use crate::store::opened::Opened;
+use super::{
+    answer::{Destination, write_json},
+    lights,
+    lights::LightArgument,
+    names, parse,
+    settings::SettingOptions,
+    textures,
+    textures::TextureArgument,
+};
+use crate::{
+    document::{
+        Background, Document, GroupName, ImportLobe, LightMix, MaterialSettings, ParameterError,
+        effect::EffectSwitches,
+        of_model::{import_report, lights_left_out, materials_of},
+        range,
+    },
+    import::is_model,
+    render::{EngineChoice, Session},
+    scene::{
+        Model, ModelOptions, ModelSource,
+        environment::{EnvironmentEncoding, EnvironmentSource},
+    },
+    store::{
+        exchange,
+        exchange::ReadOptions,
+        file_kind::{FileKind, may_hold_document, what_is_opened},
+        lut,
+        opened::Opened,
+    },
+};
 
 /// Arguments that describe what is rendered, and how. Options override what files say.
 #[derive(Debug, Default, Args)]

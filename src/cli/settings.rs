@@ -1,10 +1,8 @@
 //! The options that stand for the settings of a document: one for each line of the table that has a flag.
 
-use std::iter;
-use std::sync::LazyLock;
+use std::{iter, sync::LazyLock};
 
-use clap::parser::ValueSource;
-use clap::{Arg, ArgMatches, Args, Command, Error, FromArgMatches};
+use clap::{Arg, ArgMatches, Args, Command, Error, FromArgMatches, parser::ValueSource};
 
 use crate::document::{Document, Kind, Parameter, SETTINGS, Value};
 

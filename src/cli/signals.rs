@@ -4,8 +4,7 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
 
-use signal_hook::consts::{SIGINT, SIGTERM};
-use signal_hook::flag;
+use signal_hook::{consts::SIGINT, consts::SIGTERM, flag};
 
 /// The signals, with their names.
 const SIGNALS: &[(i32, &str)] = &[

@@ -1,18 +1,21 @@
 //! `--texture`: images of one's own on materials.
 
-use std::ffi::OsStr;
-use std::path::{Path, PathBuf};
+use std::{ffi::OsStr, path::Path, path::PathBuf};
 
 use anyhow::bail;
 use clap::builder::{OsStringValueParser, TypedValueParser};
 
 use super::names::names;
-use crate::document::Document;
-use crate::import::endings;
-use crate::named::Named as _;
-use crate::scene::Model;
-use crate::scene::path_text::path_of_bytes;
-use crate::scene::texture::{TextureTarget, UserTexture, set};
+use crate::{
+    document::Document,
+    import::endings,
+    named::Named as _,
+    scene::{
+        Model,
+        path_text::path_of_bytes,
+        texture::{TextureTarget, UserTexture, set},
+    },
+};
 
 /// Images, and the material that they are assigned to.
 #[derive(Clone, Debug, PartialEq)]

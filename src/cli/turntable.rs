@@ -1,22 +1,25 @@
 //! `glossmith turntable`: a document turned once, as numbered images or a video.
 
-use std::path::PathBuf;
-use std::time::Instant;
+use std::{path::PathBuf, time::Instant};
 
 use clap::Args;
 use clap::builder::{ArgPredicate, PathBufValueParser, TypedValueParser};
 
-use super::answer::{Destination, file_names, write_json};
-use super::render::Bar;
-use super::scene::SceneArguments;
-use super::signals::Signals;
-use super::{names, parse};
-use crate::console::message;
-use crate::document::turntable::Turn;
-use crate::render::Session;
-use crate::render::turntable::{FPS, Turntable, frame_path, render};
-use crate::scene::path_text::path_text;
-use crate::store::video::{self, VideoFormat};
+use super::{
+    answer::{Destination, file_names, write_json},
+    names, parse,
+    render::Bar,
+    scene::SceneArguments,
+    signals::Signals,
+};
+use crate::{
+    console::message,
+    document::turntable::Turn,
+    render::Session,
+    render::turntable::{FPS, Turntable, frame_path, render},
+    scene::path_text::path_text,
+    store::{video, video::VideoFormat},
+};
 
 /// Arguments of `glossmith turntable`.
 #[derive(Debug, Args)]

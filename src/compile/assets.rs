@@ -1,21 +1,19 @@
 //! Cache of assets: models, their textures and geometry, environments.
 
-use std::any::Any;
-use std::cell::RefCell;
-use std::fmt::Debug;
-use std::mem::discriminant;
-use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex};
+use std::{any::Any, cell::RefCell, fmt::Debug, mem::discriminant, path::Path, path::PathBuf, sync::Arc, sync::Mutex};
 
 use super::error::AssetError;
-use crate::import;
-use crate::import::picture::read_texture;
-use crate::import::{Budget, ModelError};
-use crate::panics::lock;
-use crate::scene::environment::{Environment, EnvironmentEncoding, EnvironmentSource};
-use crate::scene::ground::Ground;
-use crate::scene::texture::{Pack, Textures, UserTexture, UserTextures};
-use crate::scene::{AreaShape, Geometry, Loading, Model, ModelOptions, ModelSource, Texture};
+use crate::{
+    import,
+    import::{Budget, ModelError, picture::read_texture},
+    panics::lock,
+    scene::{
+        AreaShape, Geometry, Loading, Model, ModelOptions, ModelSource, Texture,
+        environment::{Environment, EnvironmentEncoding, EnvironmentSource},
+        ground::Ground,
+        texture::{Pack, Textures, UserTexture, UserTextures},
+    },
+};
 
 /// Key of a model: source and options.
 type ModelKey = (ModelSource, ModelOptions);

@@ -1,7 +1,6 @@
 //! Why a document's assets can't be had.
 
-use crate::import::ModelError;
-use crate::import::environment::EnvironmentError;
+use crate::import::{ModelError, environment::EnvironmentError};
 
 /// Why a document's assets can't be had.
 #[derive(Debug, thiserror::Error)]

@@ -2,29 +2,31 @@
 
 use std::sync::Arc;
 
-use super::assets::Assets;
-use super::error::AssetError;
-use super::materials::compile_textured;
-use crate::document::effect::{Facts, Switch, plan, without_what_is_off};
-use crate::document::light_groups::emission_group;
-use crate::document::{
-    AreaLight, Background, CameraSettings, Document, GroupName, MaterialSettings, RenderSettings, Shine,
+use super::{assets::Assets, error::AssetError, materials::compile_textured};
+use crate::{
+    document::{
+        AreaLight, Background, CameraSettings, Document, GroupName, MaterialSettings, RenderSettings, Shine,
+        effect::{Facts, Switch, plan, without_what_is_off},
+        light_groups::emission_group,
+    },
+    import::light_profile,
+    job::{BackgroundKind, Catcher, Job, Settings, Strategy, effect::EffectId, light_sums::ENVIRONMENT_GROUP},
+    optics::{
+        material::{HAS_PROFILE, LIGHT_GROUP_SHIFT, Material},
+        table::append_table,
+        vector::Vec3,
+    },
+    scene::{
+        AreaFrame, Geometry,
+        camera::{Camera, Projection, framing_distance, orbit_direction},
+        catcher::{CatcherLight, NearLight, catcher_table},
+        environment::Environment,
+        light::{LightChoice, Lights, Sampled},
+        light_profile::LightProfile,
+        medium::medium_at,
+        texture::{Textures, UserTextureFile},
+    },
 };
-use crate::import::light_profile;
-use crate::job::effect::EffectId;
-use crate::job::light_sums::ENVIRONMENT_GROUP;
-use crate::job::{BackgroundKind, Catcher, Job, Settings, Strategy};
-use crate::optics::material::{HAS_PROFILE, LIGHT_GROUP_SHIFT, Material};
-use crate::optics::table::append_table;
-use crate::optics::vector::Vec3;
-use crate::scene::camera::{Camera, Projection, framing_distance, orbit_direction};
-use crate::scene::catcher::{CatcherLight, NearLight, catcher_table};
-use crate::scene::environment::Environment;
-use crate::scene::light::{LightChoice, Lights, Sampled};
-use crate::scene::light_profile::LightProfile;
-use crate::scene::medium::medium_at;
-use crate::scene::texture::{Textures, UserTextureFile};
-use crate::scene::{AreaFrame, Geometry};
 
 /// How far from its target parallel rays start at least, bounding radii of the model, and how far behind the camera.
 const PARALLEL_REACH: f64 = 4.0;
@@ -123,7 +125,7 @@ fn textures_of(document: &Document, slots: &[MaterialSettings], assets: &Assets)
 }
 
 /// Users' texture maps of a document's materials, readable or not.
-pub(crate) fn user_texture_files(document: &Document, assets: &Assets) -> Result<Vec<UserTextureFile>, AssetError> {
+pub fn user_texture_files(document: &Document, assets: &Assets) -> Result<Vec<UserTextureFile>, AssetError> {
     let document = &*without_what_is_off(document);
     let model = assets.model(&document.model, &document.import)?;
     let slots = slot_materials(document, model.slots.len());
@@ -134,14 +136,14 @@ pub(crate) fn user_texture_files(document: &Document, assets: &Assets) -> Result
 
 /// Compiles documents; remembers the last materials and lights, whose tables take milliseconds.
 #[derive(Debug, Default)]
-pub(crate) struct Compiler {
+pub struct Compiler {
     catcher: Option<(CatcherKey, WithCatcher)>,
     materials: Option<(MaterialsKey, Compiled)>,
     lights: Option<(LightsKey, Arc<Lights>)>,
 }
 
 impl Compiler {
-    pub(crate) fn compile(&mut self, document: &Document, assets: &Assets) -> Result<Job, AssetError> {
+    pub fn compile(&mut self, document: &Document, assets: &Assets) -> Result<Job, AssetError> {
         let document = &*without_what_is_off(document);
         let (source, options) = (&document.model, &document.import);
         let model = assets.model(source, options)?;
@@ -285,7 +287,7 @@ fn cosine_and_sine(angle_deg: f32) -> [f64; 2] {
 
 /// One material per slot: the document's (the last one repeated if there are too few), the ground's if there is one, and
 /// those of the area lights.
-pub(crate) fn slot_materials(document: &Document, slots: usize) -> Vec<MaterialSettings> {
+pub fn slot_materials(document: &Document, slots: usize) -> Vec<MaterialSettings> {
     let last = document.materials.last().cloned().unwrap_or_default();
     let mut materials = document.materials.clone();
     materials.resize(slots, last);

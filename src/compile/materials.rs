@@ -2,23 +2,30 @@
 
 use std::sync::{Arc, Mutex};
 
-use crate::document::import::{MATCHED, geometric_from_ggx, ggx_under_texture};
-use crate::document::{CoatLobe, MaterialSettings};
-use crate::optics::albedo::{albedo_table, film_table, rough_albedo_table};
-use crate::optics::fresnel::{Fresnel, fresnel_f0, weighted_ior};
-use crate::optics::layer::coat::{coat_shape, inner_reflection};
-use crate::optics::layer::fuzz::FUZZ_ROUGHNESS_MIN;
-use crate::optics::lobe::{Lobe, Width, is_mirror};
-use crate::optics::material::{
-    COAT_ABSORBS, COAT_IS_GGX, COATS_BASE, COMPENSATES, FILM_BANDS, HAS_BOX, HOLDS_FILM, HOLDS_INTEGRALS, MATCHED_NODES, Material,
-    NO_TEXTURE, OVER_AZIMUTH, SPARES_METAL, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY, WEIGHS_INDEX, coat_blur,
+use crate::{
+    document::{
+        CoatLobe, MaterialSettings,
+        import::{MATCHED, geometric_from_ggx, ggx_under_texture},
+    },
+    optics::{
+        albedo::{albedo_table, film_table, rough_albedo_table},
+        fresnel::{Fresnel, fresnel_f0, weighted_ior},
+        layer::coat::{coat_shape, inner_reflection},
+        layer::fuzz::FUZZ_ROUGHNESS_MIN,
+        lobe::{Lobe, Width, is_mirror},
+        material::{
+            COAT_ABSORBS, COAT_IS_GGX, COATS_BASE, COMPENSATES, FILM_BANDS, HAS_BOX, HOLDS_FILM, HOLDS_INTEGRALS,
+            MATCHED_NODES, Material, NO_TEXTURE, OVER_AZIMUTH, SPARES_METAL, VERTEX_BASE, VERTEX_EMISSION,
+            VERTEX_OPACITY, WEIGHS_INDEX, coat_blur,
+        },
+        scattering::scattering_table,
+        table::{append_table, table_lookup},
+        thin_film::{UNBANDED_PHASE, film_path},
+        vector::Vec3,
+    },
+    panics::lock,
+    scene::texture::{SlotTextures, TextureTarget as On},
 };
-use crate::optics::scattering::scattering_table;
-use crate::optics::table::{append_table, table_lookup};
-use crate::optics::thin_film::{UNBANDED_PHASE, film_path};
-use crate::optics::vector::Vec3;
-use crate::panics::lock;
-use crate::scene::texture::{SlotTextures, TextureTarget as On};
 
 /// Samples of each node of an albedo table.
 const ALBEDO_SAMPLES: u32 = 1024;

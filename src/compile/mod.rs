@@ -7,5 +7,5 @@ mod materials;
 
 pub use assets::{Assets, Reloaded};
 pub use error::AssetError;
-pub(crate) use job::{Compiler, slot_materials, user_texture_files};
+pub use job::{Compiler, slot_materials, user_texture_files};
 pub use materials::{compile, compile_textured};

@@ -8,19 +8,25 @@ pub mod recorder;
 pub mod scatter;
 mod tile_sums;
 
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex};
-use std::time::{Duration, Instant};
+use std::{
+    sync::{Arc, Mutex, atomic::AtomicUsize, atomic::Ordering},
+    time::Duration,
+    time::Instant,
+};
 
-use crate::instructions;
 pub use crate::instructions::instruction_set;
-use crate::job::Job;
-use crate::job::film::Film;
-use crate::job::tiles::{Order, Schedule, SliceLimits, TileGrid, Work};
-use crate::optics::elementary::Single;
-use crate::optics::lanes::{InLanes, in_lanes};
-use crate::panics::lock;
-use crate::parallel;
+use crate::{
+    instructions,
+    job::{
+        Job,
+        film::Film,
+        tiles::{Order, Schedule, SliceLimits, TileGrid, Work},
+    },
+    optics::elementary::Single,
+    optics::lanes::{InLanes, in_lanes},
+    panics::lock,
+    parallel,
+};
 use integrator::{Integrator, PATHS, Tile, WAVE_SAMPLES, Wave};
 use tile_sums::TileSums;
 

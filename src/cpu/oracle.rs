@@ -5,10 +5,12 @@ use fearless_simd::Level;
 
 use super::integrator::{Integrator, PATHS, PathResult, Tile, Wave};
 use super::recorder::Event;
-use crate::job::Job;
-use crate::optics::elementary::Single;
-use crate::optics::lanes::{InLanes, in_lanes};
-use crate::scene::PACKET;
+use crate::{
+    job::Job,
+    optics::elementary::Single,
+    optics::lanes::{InLanes, in_lanes},
+    scene::PACKET,
+};
 
 /// A path tracer that follows one path at a time, in f32.
 pub struct PathTracer<'a>(Integrator<'a, f32>);

@@ -1,21 +1,24 @@
 //! A map of numerical trouble, pixel by pixel: f32 against f64 on the same surface, dropped samples, and rays that start on
 //! the wrong side.
 
-use super::integrator::is_sound;
-use super::oracle::PathTracer;
-use super::probe::moved_direction;
-use crate::job::precision::{ERROR_BOUND, Finding, PrecisionMap, relative_error};
-use crate::job::{Job, Settings};
-use crate::optics::frame::Frame;
-use crate::optics::layer::{MaterialNumbers, material_evaluate, material_layers, material_sample};
-use crate::optics::material::{Material, Surface};
-use crate::optics::random::{RandomState, path_state, random_pair};
-use crate::optics::vector::Vec3;
-use crate::optics::warp::uniform_sphere;
-use crate::parallel;
-use crate::scene::camera::camera_ray;
-use crate::scene::surface::{SurfacePoint, surface_at};
-use crate::scene::texture::textured_material;
+use super::{integrator::is_sound, oracle::PathTracer, probe::moved_direction};
+use crate::{
+    job::{
+        Job, Settings,
+        precision::{ERROR_BOUND, Finding, PrecisionMap, relative_error},
+    },
+    optics::{
+        frame::Frame,
+        layer::{MaterialNumbers, material_evaluate, material_layers, material_sample},
+        material::Material,
+        material::Surface,
+        random::{RandomState, path_state, random_pair},
+        vector::Vec3,
+        warp::uniform_sphere,
+    },
+    parallel,
+    scene::{camera::camera_ray, surface::SurfacePoint, surface::surface_at, texture::textured_material},
+};
 
 /// Paths a pixel that are looked at for samples to drop.
 const PATHS: u32 = 4;

@@ -1,20 +1,24 @@
 //! Single functions asked about inputs of one's own. Twin of `shaders/pass/probe.wgsl`; the material in f64, too, as the
 //! oracle.
 
-use crate::job::probe::{
-    DrawAnswer, DrawQuestion, FresnelQuestion, LobeAnswer, LobeQuestion, MaterialQuestion, MaterialView, NO_HIT,
-    ProbeScene, RandomQuestion, RayAnswer, RayQuestion,
-};
-use crate::optics::curve::Curve;
-use crate::optics::frame::{Frame, frame_from_normal};
-use crate::optics::fresnel::{Fresnel, FresnelTerms, fresnel, fresnel_conductor, fresnel_dielectric};
-use crate::optics::layer::{MaterialNumbers, material_density, material_evaluate, material_layers, material_sample};
-use crate::optics::lobe::{Horizon, Lobe, LobeShape, lobe_evaluate, lobe_sample};
-use crate::optics::material::{Material, Surface};
 use crate::optics::prelude::*;
-use crate::optics::random::{Sequence, random_pair_bits, random_state};
-use crate::optics::thin_film::FilmTerms;
-use crate::parallel;
+use crate::{
+    job::probe::{
+        DrawAnswer, DrawQuestion, FresnelQuestion, LobeAnswer, LobeQuestion, MaterialQuestion, MaterialView, NO_HIT,
+        ProbeScene, RandomQuestion, RayAnswer, RayQuestion,
+    },
+    optics::{
+        curve::Curve,
+        frame::{Frame, frame_from_normal},
+        fresnel::{Fresnel, FresnelTerms, fresnel, fresnel_conductor, fresnel_dielectric},
+        layer::{MaterialNumbers, material_density, material_evaluate, material_layers, material_sample},
+        lobe::{Horizon, Lobe, LobeShape, lobe_evaluate, lobe_sample},
+        material::{Material, Surface},
+        random::{Sequence, random_pair_bits, random_state},
+        thin_film::FilmTerms,
+    },
+    parallel,
+};
 
 fn by_number<E: Copy>(all: &[E], number: u32) -> E {
     all[(number as usize).min(all.len() - 1)]

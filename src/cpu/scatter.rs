@@ -1,9 +1,11 @@
 //! Samples of a lobe, drawn as the path tracer draws them. Twin of `shaders/pass/scatter.wgsl`.
 
-use crate::job::scatter::{ScatterCloud, ScatterRequest};
-use crate::optics::lobe::{lobe_evaluate, lobe_sample};
-use crate::optics::random::{Sequence, random_pair, random_state};
-use crate::parallel;
+use crate::{
+    job::scatter::{ScatterCloud, ScatterRequest},
+    optics::lobe::{lobe_evaluate, lobe_sample},
+    optics::random::{Sequence, random_pair, random_state},
+    parallel,
+};
 
 pub fn scatter(request: &ScatterRequest) -> ScatterCloud {
     let shape = request.model.shape::<f32>();

@@ -2,8 +2,7 @@
 //! SIMD.
 
 use super::integrator::{BLOCK_PIXELS, Results, Tile, is_sound};
-use crate::job::film::{Film, HalfSums};
-use crate::job::guides::GUIDE_SAMPLES;
+use crate::job::{film::Film, film::HalfSums, guides::GUIDE_SAMPLES};
 use crate::optics::prelude::*;
 
 /// A tile's sums and its part of the film.

@@ -6,11 +6,11 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use super::{GroupName, MaterialSettings, ProfileFile, range};
-use crate::named::{named, with_defaults};
-use crate::optics::material::Material;
-use crate::optics::vector::Vec3;
-use crate::scene::catcher::NearLight;
-use crate::scene::{AreaFrame, AreaShape, Outline};
+use crate::{
+    named::{named, with_defaults},
+    optics::{material::Material, vector::Vec3},
+    scene::{AreaFrame, AreaShape, Outline, catcher::NearLight},
+};
 
 /// How far away a sun is, bounding radii: its light is parallel to a hundredth of a degree.
 pub const SUN_DISTANCE: f64 = 1e4;

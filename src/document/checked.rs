@@ -2,8 +2,11 @@
 
 use std::ops::RangeInclusive;
 
-use super::parameter::{LIGHT_PARAMETERS, ParameterError, SETTINGS, Stage};
-use super::{Background, Document, range};
+use super::{
+    Background, Document,
+    parameter::{LIGHT_PARAMETERS, ParameterError, SETTINGS, Stage},
+    range,
+};
 
 /// A setting out of its range.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

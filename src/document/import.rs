@@ -4,12 +4,11 @@
 use std::sync::LazyLock;
 
 use super::{CoatLobe, MaterialSettings, parameter};
-use crate::named::named;
-use crate::optics::lobe::{Lobe, Width};
-use crate::optics::material::MATCHED_NODES;
-use crate::optics::table::table_lookup;
-use crate::scene::texture::TextureTarget;
-use crate::scene::{AlphaMode, Slot};
+use crate::{
+    named::named,
+    optics::{lobe::Lobe, lobe::Width, material::MATCHED_NODES, table::table_lookup},
+    scene::{AlphaMode, Slot, texture::TextureTarget},
+};
 
 named! {
     /// The lobe that a model's materials get.

@@ -2,10 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::group_name::GroupName;
-use super::{AreaLight, Document, MaterialSettings};
-use crate::job::light_sums::LIGHT_GROUPS_MAX;
-use crate::named::with_defaults;
+use super::{AreaLight, Document, MaterialSettings, group_name::GroupName};
+use crate::{job::light_sums::LIGHT_GROUPS_MAX, named::with_defaults};
 
 with_defaults! {
     /// What a group's light is multiplied by after rendering.

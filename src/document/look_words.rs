@@ -1,9 +1,7 @@
 //! Words for how a material looks, which a search finds it by.
 
 use super::MaterialSettings;
-use crate::optics::fresnel::Fresnel;
-use crate::optics::tone::srgb_from_linear;
-use crate::optics::vector::Vec3;
+use crate::optics::{fresnel::Fresnel, tone::srgb_from_linear, vector::Vec3};
 
 /// Roughness below which a reflection is a mirror's, glossy, satin; above it is matt.
 const SMOOTHNESS: [(f32, &str); 3] = [(0.06, "mirror"), (0.28, "glossy"), (0.52, "satin")];

@@ -6,13 +6,17 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value as Json};
 
 use super::CustomCurve;
-use crate::named::{named, with_defaults};
-use crate::optics::curve::Curve;
-use crate::optics::fresnel::{Fresnel, METALS, Metal};
-use crate::optics::lobe::{Horizon, Lobe};
-use crate::optics::target::{TARGETS, TextureTarget};
-use crate::optics::thin_film::has_film;
-use crate::scene::texture::UserTextures;
+use crate::{
+    named::{named, with_defaults},
+    optics::{
+        curve::Curve,
+        fresnel::{Fresnel, METALS, Metal},
+        lobe::{Horizon, Lobe},
+        target::{TARGETS, TextureTarget},
+        thin_film::has_film,
+    },
+    scene::texture::UserTextures,
+};
 
 /// The metal of new materials, in [`METALS`].
 const ALUMINIUM: usize = 3;

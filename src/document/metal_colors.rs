@@ -1,10 +1,11 @@
 //! A metal by two colours, seen head-on and towards the edge, in place of a measured index of refraction.
 
-use super::MaterialSettings;
-use super::material::Conductor;
-use crate::optics::fresnel::{Fresnel, fresnel_conductor, fresnel_schlick};
-use crate::optics::vector::Vec3;
-use crate::scene::texture::TextureTarget;
+use super::{MaterialSettings, material::Conductor};
+use crate::{
+    optics::fresnel::{Fresnel, fresnel_conductor, fresnel_schlick},
+    optics::vector::Vec3,
+    scene::texture::TextureTarget,
+};
 
 /// The cosine at which the edge's colour is exact, about 82°.
 const EDGE: f64 = 1.0 / 7.0;

@@ -25,8 +25,7 @@ mod switches;
 mod texture_json;
 pub mod turntable;
 
-use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::{collections::BTreeMap, path::Path, path::PathBuf};
 
 use serde::{Deserialize, Serialize};
 
@@ -51,13 +50,9 @@ pub use settings::{
 };
 pub use texture_json::{TextureError, texture_from_json, texture_to_json};
 
-pub use crate::scene::texture::UserTextures;
+pub use crate::{job::LightPaths, job::Strategy, scene::camera::PixelFilter, scene::texture::UserTextures};
 
-pub use crate::job::{LightPaths, Strategy};
-pub use crate::scene::camera::PixelFilter;
-
-use crate::named::with_defaults;
-use crate::scene::{ModelOptions, ModelSource};
+use crate::{named::with_defaults, scene::ModelOptions, scene::ModelSource};
 
 with_defaults! {
     /// Everything that an image depends on, except for the contents of the files it names.
@@ -103,7 +98,10 @@ impl Document {
     /// The files that it names beside model and environment: its materials' textures, the view's table of colours and its
     /// reference, lights' profiles.
     pub fn pictures(&self) -> impl Iterator<Item = &Path> {
-        let textures = self.materials.iter().flat_map(|material| material.user_textures.files());
+        let textures = self
+            .materials
+            .iter()
+            .flat_map(|material| material.user_textures.files());
         let reference = self.view.reference.as_ref().map(|reference| &reference.file);
         let of_view = self.view.lut.as_ref().into_iter().chain(reference);
         let of_lights = self.lighting.area_lights.iter().filter_map(|light| light.profile);

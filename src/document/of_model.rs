@@ -8,9 +8,13 @@ use super::{
     AreaLight, AreaLightShape, Bookmark, CameraSettings, CoatLobe, Document, GroupName, ImportLobe, MaterialSettings,
     range,
 };
-use crate::optics::lobe::Lobe;
-use crate::scene::camera::{Projection, right_and_up};
-use crate::scene::{Fate, ImportReport, LIGHTS_MAX, LightKind, Model, ModelCamera, ModelLens, ModelLight};
+use crate::{
+    optics::lobe::Lobe,
+    scene::{
+        Fate, ImportReport, LIGHTS_MAX, LightKind, Model, ModelCamera, ModelLens, ModelLight,
+        camera::{Projection, right_and_up},
+    },
+};
 
 /// Diameter of the balls and discs that stand for lights of no size, over their distance from the middle of the model or its
 /// bounding radius: so small that a disc a tenth of a radius from a surface lights it within 0.02 %. A smaller one far away would be

@@ -1,7 +1,6 @@
 //! The name of a light profile's file.
 
-use std::path::{Path, PathBuf};
-use std::sync::Mutex;
+use std::{path::Path, path::PathBuf, sync::Mutex};
 
 use serde::{Deserialize, Serialize};
 

@@ -4,15 +4,15 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use super::switches::{EffectSwitches, Switch};
-use super::{AreaLight, GroundSettings, LightMix, Reference};
-use crate::job::effect::EffectId;
-use crate::job::{LightPaths, Strategy};
-use crate::named::{named, with_defaults};
-use crate::optics::random::Sequence;
-use crate::optics::tone::{Grade, ToneCurve};
-use crate::scene::camera::{PixelFilter, Projection};
-use crate::scene::environment::{EnvironmentEncoding, EnvironmentSource};
+use super::{AreaLight, GroundSettings, LightMix, Reference, switches::EffectSwitches, switches::Switch};
+use crate::{
+    job::{LightPaths, Strategy, effect::EffectId},
+    named::{named, with_defaults},
+    optics::random::Sequence,
+    optics::tone::{Grade, ToneCurve},
+    scene::camera::{PixelFilter, Projection},
+    scene::environment::{EnvironmentEncoding, EnvironmentSource},
+};
 
 with_defaults! {
     /// Where the light comes from.

@@ -1,12 +1,10 @@
 //! What the user decides about effects, against the plan.
 
-use std::collections::BTreeMap;
-use std::str::FromStr;
+use std::{collections::BTreeMap, str::FromStr};
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use crate::job::effect::EffectId;
-use crate::named::named;
+use crate::{job::effect::EffectId, named::named};
 
 named! {
     /// What the user decides about an effect.

@@ -2,9 +2,11 @@
 
 use pollster::block_on;
 
-use super::array::TEXEL_ROW;
-use super::device::{GpuDevice, GpuError, driver, is_software};
-use super::traversal::Traversal;
+use super::{
+    array::TEXEL_ROW,
+    device::{GpuDevice, GpuError, driver, is_software},
+    traversal::Traversal,
+};
 
 /// Kinds of adapters to consider.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

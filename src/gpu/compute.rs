@@ -1,9 +1,11 @@
 //! Parts of every compute pass: module, layouts, pipeline, bindings, dispatch.
 
-use super::device::{GpuDevice, GpuError, Moment};
-use super::shader;
-use super::timer::Timer;
-use super::traversal::Traversal;
+use super::{
+    device::{GpuDevice, GpuError, Moment},
+    shader,
+    timer::Timer,
+    traversal::Traversal,
+};
 
 /// The path tracer's pass, and its entry point.
 pub const PATH_TRACE: &str = "path_trace";

@@ -1,25 +1,30 @@
 //! Renders jobs on the GPU in slices that fit a budget.
 
-use std::ops::Range;
-use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::{ops::Range, sync::Arc, time::Duration, time::Instant};
 
-use super::budget::{Budget, DISPATCH, DISPATCH_SOFTWARE};
-use super::compute::{self, PATH_TRACE};
-use super::device::{GpuDevice, GpuError};
-use super::kernel_cache::KernelCache;
-use super::layout::{PixelColors, PixelStatistics, Tile};
-use super::pipeline::ScenePass;
-use super::resources::Resources;
-use super::scene_group::SceneForm;
-use super::sums::{self, Band, DISPATCH_TILES};
-use super::timer::Timer;
-use crate::job::Job;
-use crate::job::film::{Film, HalfSums, LightSums, luminance};
-use crate::job::guides::GuideSums;
-use crate::job::plan::Specialisation;
-use crate::job::tiles::{Order, Schedule, SliceLimits, Work};
-use crate::parallel;
+use super::{
+    budget::{Budget, DISPATCH, DISPATCH_SOFTWARE},
+    compute,
+    compute::PATH_TRACE,
+    device::{GpuDevice, GpuError},
+    kernel_cache::KernelCache,
+    layout::{PixelColors, PixelStatistics, Tile},
+    pipeline::ScenePass,
+    resources::Resources,
+    scene_group::SceneForm,
+    sums::{self, Band, DISPATCH_TILES},
+    timer::Timer,
+};
+use crate::{
+    job::{
+        Job,
+        film::{Film, HalfSums, LightSums, luminance},
+        guides::GuideSums,
+        plan::Specialisation,
+        tiles::{Order, Schedule, SliceLimits, Work},
+    },
+    parallel,
+};
 
 /// Samples per pixel that the GPU's f32 sums take before the host adds them to its f64 film.
 pub const FLUSH_SAMPLES: u32 = 1024;

@@ -1,28 +1,36 @@
 //! Shader modules that are generated from Rust's lists, so that no number is copied by hand.
 
-use super::array::TEXEL_ROW_BITS;
-use super::layout::{BACKGROUNDS, Globals, PixelColors, PixelStatistics, TILE_COLUMNS, Tile};
-use super::scatter::Scatter;
-use super::scene_group::FEW_MATERIALS;
-use crate::job::Strategy;
-use crate::job::effect::{ANY, EffectId};
-use crate::job::guides::GUIDE_SAMPLES;
-use crate::job::light_sums::{ENVIRONMENT_GROUP, LIGHT_GROUPS_MAX};
-use crate::job::probe::{
-    DrawAnswer, DrawQuestion, FresnelQuestion, LobeAnswer, LobeQuestion, MaterialQuestion, RandomQuestion, RayAnswer,
-    RayQuestion,
+use super::{
+    array::TEXEL_ROW_BITS,
+    layout::{BACKGROUNDS, Globals, PixelColors, PixelStatistics, TILE_COLUMNS, Tile},
+    scatter::Scatter,
+    scene_group::FEW_MATERIALS,
 };
-use crate::named::Named;
-use crate::optics::chord::{GAUSS_6, GAUSS_12, GAUSS_20, RANGE_MAX};
-use crate::optics::curve::Curve;
-use crate::optics::fresnel::Fresnel;
-use crate::optics::layer::Layer;
-use crate::optics::lobe::{Horizon, Lobe, LobeTraits, Width};
-use crate::optics::material::{FIELDS, Field, NO_TEXTURE, TEXTURES};
-use crate::optics::random::Sequence;
-use crate::optics::target::{TextureTarget, TextureValues};
-use crate::scene::camera::PixelFilter;
-use crate::scene::catcher::{CATCHER_BEND, CATCHER_HALF_SIDE, CATCHER_REFLECTANCE};
+use crate::{
+    job::{
+        Strategy,
+        effect::{ANY, EffectId},
+        guides::GUIDE_SAMPLES,
+        light_sums::{ENVIRONMENT_GROUP, LIGHT_GROUPS_MAX},
+        probe::{
+            DrawAnswer, DrawQuestion, FresnelQuestion, LobeAnswer, LobeQuestion, MaterialQuestion, RandomQuestion,
+            RayAnswer, RayQuestion,
+        },
+    },
+    named::Named,
+    optics::{
+        chord::{GAUSS_6, GAUSS_12, GAUSS_20, RANGE_MAX},
+        curve::Curve,
+        fresnel::Fresnel,
+        layer::Layer,
+        lobe::{Horizon, Lobe, LobeTraits, Width},
+        material::{FIELDS, Field, NO_TEXTURE, TEXTURES},
+        random::Sequence,
+        target::{TextureTarget, TextureValues},
+    },
+    scene::camera::PixelFilter,
+    scene::catcher::{CATCHER_BEND, CATCHER_HALF_SIDE, CATCHER_REFLECTANCE},
+};
 
 /// A generated module: its name for `#import`, and its generator.
 pub type Generated = (&'static str, fn() -> String);

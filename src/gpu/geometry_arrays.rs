@@ -1,11 +1,15 @@
 //! The geometry on the GPU: hierarchy, triangles and vertices of the model, followed by those of its surroundings; for ray
 //! queries, the adapter's acceleration structures, too.
 
-use super::array::{self, Values};
-use super::device::{GpuDevice, GpuError};
-use super::layout::{self, Triangle};
-use super::structures::Structures;
-use super::traversal::Traversal;
+use super::{
+    array,
+    array::Values,
+    device::{GpuDevice, GpuError},
+    layout,
+    layout::Triangle,
+    structures::Structures,
+    traversal::Traversal,
+};
 use crate::scene::{Geometry, Part, Vertex};
 
 /// Triangles around a model for which there is always room, so that lights move and come without the model being brought to

@@ -1,7 +1,6 @@
 //! Cache of compiled kernels on disk, if the driver supports it (`Features::PIPELINE_CACHE`: Vulkan).
 
-use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::{io::Write, path::Path, path::PathBuf};
 
 use super::{device::GpuDevice, traversal::Traversal};
 

@@ -1,5 +1,7 @@
 //! The engine on the GPU: the only code that talks to wgpu's compute.
 
+use glossmith_engine::{job, named, optics, panics, parallel, scene};
+
 mod adapter;
 mod array;
 pub mod budget;

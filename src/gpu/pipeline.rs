@@ -2,11 +2,14 @@
 
 use std::{collections::HashMap, hash::Hash};
 
-use super::compute;
-use super::device::{GpuDevice, GpuError};
-use super::kernel_cache::KernelCache;
-use super::scene_group::{self, SceneForm};
-use super::traversal::Traversal;
+use super::{
+    compute,
+    device::{GpuDevice, GpuError},
+    kernel_cache::KernelCache,
+    scene_group,
+    scene_group::SceneForm,
+    traversal::Traversal,
+};
 
 /// The shader of a pass for each traversal that was linked, its binding layouts, and its pipelines by what they are made for.
 #[derive(Debug)]

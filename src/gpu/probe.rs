@@ -4,15 +4,17 @@ use std::{hash::Hash, sync::Mutex};
 
 use bytemuck::{Pod, Zeroable};
 
-use super::compute::{self, READ, WRITE};
-use super::device::{GpuDevice, GpuError};
-use super::geometry_arrays::GeometryArrays;
-use super::layout::{self, Globals};
-use super::pipeline::ScenePass;
-use super::scene_group::{self, SceneForm, SceneGroup};
-use super::traversal::Traversal;
-use crate::job::probe::ProbeScene;
-use crate::panics::lock;
+use super::{
+    compute::{self, READ, WRITE},
+    device::{GpuDevice, GpuError},
+    geometry_arrays::GeometryArrays,
+    layout,
+    layout::Globals,
+    pipeline::ScenePass,
+    scene_group::{self, SceneForm, SceneGroup},
+    traversal::Traversal,
+};
+use crate::{job::probe::ProbeScene, panics::lock};
 
 /// Questions a dispatch: within the limit of 65 535 workgroups of 64.
 const BATCH: usize = 1 << 20;

@@ -2,14 +2,15 @@
 
 use std::sync::Arc;
 
-use super::device::{GpuDevice, GpuError, Moment};
-use super::engine::PathTracer;
-use super::geometry_arrays::GeometryArrays;
-use super::layout::Globals;
-use super::scene_group::{self, SceneForm, SceneGroup};
-use super::sums::Sums;
-use crate::job::Job;
-use crate::scene::Geometry;
+use super::{
+    device::{GpuDevice, GpuError, Moment},
+    engine::PathTracer,
+    geometry_arrays::GeometryArrays,
+    layout::Globals,
+    scene_group::{self, SceneForm, SceneGroup},
+    sums::Sums,
+};
+use crate::{job::Job, scene::Geometry};
 
 /// Buffers and textures of a job. Parts that a new job shares with the old one are kept.
 #[derive(Debug)]

@@ -1,12 +1,16 @@
 //! Samples of a lobe, drawn by the shader function that the path tracer runs (`shaders/pass/scatter.wgsl`).
 
-use super::compute::{self, UNIFORMS, WRITE};
-use super::device::{GpuDevice, GpuError};
-use super::scene_group::{self, TABLES_BINDING, TEXELS};
-use super::traversal::Traversal;
-use crate::job::plain;
-use crate::job::scatter::{ScatterCloud, ScatterRequest};
-use crate::optics::vector::Vec3;
+use super::{
+    compute::{self, UNIFORMS, WRITE},
+    device::{GpuDevice, GpuError},
+    scene_group::{self, TABLES_BINDING, TEXELS},
+    traversal::Traversal,
+};
+use crate::{
+    job::plain,
+    job::scatter::{ScatterCloud, ScatterRequest},
+    optics::vector::Vec3,
+};
 
 /// Samples a dispatch: within the limit of 65 535 workgroups of 64.
 const BATCH: u32 = 1 << 20;

@@ -2,18 +2,25 @@
 
 use bytemuck::Zeroable as _;
 
-use super::array::{self, Values};
-use super::compute::{self, READ, UNIFORMS, texture};
-use super::device::{GpuDevice, GpuError};
-use super::geometry_arrays::{Form, GeometryArrays};
-use super::traversal::Traversal;
-use crate::job::Job;
-use crate::optics::{material::Material, table::NODE_LENGTH};
-use crate::scene::Geometry;
-use crate::scene::environment::{Distribution, Environment};
-use crate::scene::inversion::Share;
-use crate::scene::light::Lights;
-use crate::scene::texture::Textures;
+use super::{
+    array,
+    array::Values,
+    compute::{self, READ, UNIFORMS, texture},
+    device::{GpuDevice, GpuError},
+    geometry_arrays::{Form, GeometryArrays},
+    traversal::Traversal,
+};
+use crate::{
+    job::Job,
+    optics::{material::Material, table::NODE_LENGTH},
+    scene::{
+        Geometry,
+        environment::{Distribution, Environment},
+        inversion::Share,
+        light::Lights,
+        texture::Textures,
+    },
+};
 
 /// The binding of the materials' tables.
 pub const TABLES_BINDING: u32 = 5;

@@ -1,8 +1,10 @@
 //! Group 1 of the path tracer: its tiles, and the image's sums, in bands of rows if they exceed a buffer binding.
 
-use super::compute::{self, UNIFORMS, WRITE};
-use super::device::{GpuDevice, GpuError};
-use super::layout::{PixelColors, PixelStatistics, TILE_COLUMNS, Tile};
+use super::{
+    compute::{self, UNIFORMS, WRITE},
+    device::{GpuDevice, GpuError},
+    layout::{PixelColors, PixelStatistics, TILE_COLUMNS, Tile},
+};
 use crate::job::{Job, film::Extras, guides::GuideSums, tiles::TILE_SIDE};
 
 /// Tiles per dispatch at most: one workgroup each, of which WebGPU allows 65 535 per dimension.

@@ -1,16 +1,18 @@
 //! The meshes of a scene's nodes joined into a model, those of many nodes as instances; cameras and lights at nodes.
 
-use std::collections::HashMap;
-use std::hash::Hash;
-use std::path::Path;
+use std::{collections::HashMap, hash::Hash, path::Path};
 
 use glam::{DMat3, DMat4, DVec3};
 
-use crate::model_error::ModelError;
-use crate::scene::mesh::{Mesh, MeshInstance};
-use crate::scene::report::{Fate, ImportReport};
-use crate::scene::transform::transformed;
-use crate::scene::{LightKind, Loading, Model, ModelCamera, ModelLens, ModelLight, ModelObject};
+use crate::{
+    model_error::ModelError,
+    scene::{
+        LightKind, Loading, Model, ModelCamera, ModelLens, ModelLight, ModelObject,
+        mesh::{Mesh, MeshInstance},
+        report::{Fate, ImportReport},
+        transform::transformed,
+    },
+};
 
 /// More vertices than this are refused, so that indices of 32 bits suffice with the ground and split vertices added.
 const MAX_VERTICES: usize = 1 << 31;

@@ -1,18 +1,23 @@
 //! The files beside a model: in its folder, or in the archive that it came in.
 
-use std::borrow::Cow;
-use std::collections::HashMap;
-use std::ffi::OsStr;
-use std::fs::{self, File};
-use std::io::{self, BufReader, ErrorKind, Read};
-use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex};
+use std::{
+    borrow::Cow,
+    collections::HashMap,
+    ffi::OsStr,
+    fs,
+    fs::File,
+    io::{self, BufReader, ErrorKind, Read},
+    path::{Path, PathBuf},
+    sync::{Arc, Mutex},
+};
 
 use zip::ZipArchive;
 
-use crate::limits::{self, Budget, Reach, is_elsewhere};
-use crate::panics::lock;
-use crate::scene::Loading;
+use crate::{
+    limits::{self, Budget, Reach, is_elsewhere},
+    panics::lock,
+    scene::Loading,
+};
 
 /// Size in bytes from which an archive's contents may be at most [`PACKED_MOST`] times their packed size.
 const PACKED_FROM: u64 = 64 << 20;

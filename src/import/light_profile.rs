@@ -3,11 +3,9 @@
 //! Of the crates that read them, `eulumdat` has a licence that this program can't take, and `lidrs` brings five crates, for
 //! a list of numbers behind a line.
 
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::{path::Path, path::PathBuf, sync::Arc};
 
-use super::limits;
-use super::remembered::Remembered;
+use super::{limits, remembered::Remembered};
 use crate::scene::light_profile::{ANGLES_MAX, LightProfile};
 
 /// Profiles that are remembered.

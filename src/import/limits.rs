@@ -3,16 +3,19 @@
 //! A file from a stranger may name anything. Only regular files are read, and only within reach of the naming file; others
 //! only with the user's permission.
 
-use std::fs::{File, OpenOptions};
-use std::io::{self, ErrorKind, Read as _};
-use std::path::{Component, Path, PathBuf, Prefix};
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
-use std::sync::{Arc, Mutex};
+use std::{
+    fs::{File, OpenOptions},
+    io::{self, ErrorKind, Read as _},
+    path::{Component, Path, PathBuf, Prefix},
+    sync::{
+        Arc, Mutex,
+        atomic::{AtomicBool, AtomicU64, Ordering::Relaxed},
+    },
+};
 
 use sysinfo::{MemoryRefreshKind, RefreshKind, System};
 
-use crate::panics::lock;
-use crate::scene::Loading;
+use crate::{panics::lock, scene::Loading};
 
 /// The most bytes of one file.
 pub(super) const BYTES_MAX: u64 = 4 << 30;

@@ -1,13 +1,16 @@
 //! Textures of formats that name an image for each parameter: every image is read once, and those of numbers are put together.
 
-use std::borrow::Cow;
-use std::collections::{HashMap, HashSet};
+use std::{borrow::Cow, collections::HashMap, collections::HashSet};
 
-use crate::files::Files;
-use crate::picture::Encoded;
-use crate::scene::report::{Fate, ImportReport};
-use crate::scene::texture::{TextureTarget, TextureValues};
-use crate::scene::{AlphaMode, ModelOptions, Slot, Texture, TextureRef};
+use crate::{
+    files::Files,
+    picture::Encoded,
+    scene::{
+        AlphaMode, ModelOptions, Slot, Texture, TextureRef,
+        report::{Fate, ImportReport},
+        texture::{TextureTarget, TextureValues},
+    },
+};
 
 /// A channel of a texture: the texture, and the number that its texel stands for.
 type Channel = (usize, fn([u8; 4]) -> u8);

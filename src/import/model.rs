@@ -3,13 +3,17 @@
 use std::path::{Path, PathBuf};
 
 use super::{fbx, gltf, obj, ply, stl};
-use crate::endings::{MODELS, ending, has_ending};
-use crate::files::{Files, Import};
-use crate::limits::Reach;
-use crate::model_error::ModelError;
-use crate::scene::report::{Fate, ImportReport};
-use crate::scene::texture::TextureTarget;
-use crate::scene::{Framing, LIGHTS_MAX, LightKind, Loading, Model, ModelLight, ModelOptions, ModelSource, Texture};
+use crate::{
+    endings::{MODELS, ending, has_ending},
+    files::{Files, Import},
+    limits::Reach,
+    model_error::ModelError,
+    scene::{
+        Framing, LIGHTS_MAX, LightKind, Loading, Model, ModelLight, ModelOptions, ModelSource, Texture,
+        report::{Fate, ImportReport},
+        texture::TextureTarget,
+    },
+};
 
 /// Loads a model. Blocks while reading and decoding; never panics on a damaged file.
 pub fn load(source: &ModelSource) -> Result<Model, ModelError> {

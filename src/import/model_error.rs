@@ -1,7 +1,6 @@
 //! Errors of models, in one line each.
 
-use std::fmt::Display;
-use std::path::Path;
+use std::{fmt::Display, path::Path};
 
 use crate::scene::Cancelled;
 

@@ -1,7 +1,6 @@
 //! Polygons as triangles, by the earcut crate where a fan from the first corner does not fit.
 
-use earcut::Earcut;
-use earcut::utils3d::project3d_to_2d;
+use earcut::{Earcut, utils3d::project3d_to_2d};
 use glam::DVec3;
 
 use crate::scene::report::{Fate, ImportReport};

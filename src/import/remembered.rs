@@ -1,9 +1,6 @@
 //! Files that are read where they are needed, and again once they were saved since.
 
-use std::fmt::Display;
-use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex};
-use std::time::SystemTime;
+use std::{fmt::Display, path::Path, path::PathBuf, sync::Arc, sync::Mutex, time::SystemTime};
 
 use crate::panics::lock;
 

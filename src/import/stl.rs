@@ -6,12 +6,12 @@ use std::path::Path;
 
 use glam::{DVec3, Vec2, Vec3, Vec4};
 
-use crate::files::text_or_latin_1;
-use crate::model_error::ModelError;
-use crate::polygon::Polygons;
-use crate::scene::mesh::Mesh;
-use crate::scene::report::{Fate, ImportReport};
-use crate::scene::{Loading, Model, Slot};
+use crate::{
+    files::text_or_latin_1,
+    model_error::ModelError,
+    polygon::Polygons,
+    scene::{Loading, Model, Slot, mesh::Mesh, report::Fate, report::ImportReport},
+};
 
 /// Bytes before the triangles of a binary file, and of each: a normal, three corners, two bytes that some programs colour by.
 const HEADER: usize = 84;

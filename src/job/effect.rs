@@ -1,7 +1,6 @@
 //! The effects (features) that an engine can simulate, and the decision about each.
 
-use std::fmt;
-use std::str::FromStr;
+use std::{fmt, str::FromStr};
 
 /// Value of a constant that each material decides.
 pub const ANY: u32 = u32::MAX;

@@ -1,9 +1,6 @@
 //! The film: an image as sums, which the engines accumulate.
 
-use super::effect::EffectId;
-use super::guides::{GUIDE_SAMPLES, GuideSums};
-use super::tiles::TileGrid;
-use super::{BackgroundKind, Job};
+use super::{BackgroundKind, Job, effect::EffectId, guides::GUIDE_SAMPLES, guides::GuideSums, tiles::TileGrid};
 use crate::parallel;
 
 /// Sums over the samples of each pixel. Colours are summed in f64, so that they do not stall after millions of samples. 80

@@ -2,6 +2,7 @@
 //! schedule, and other requests.
 
 /// Structures of plain words, which the GPU reads byte for byte.
+#[macro_export]
 macro_rules! plain {
     ($($(#[$doc:meta])* struct $name:ident { $($(#[$of_field:meta])* $field:ident: $type:ty,)* })*) => {
         $(
@@ -19,7 +20,7 @@ macro_rules! plain {
         )*
     };
 }
-pub(crate) use plain;
+pub use crate::plain;
 
 pub mod effect;
 pub mod features;
@@ -34,15 +35,18 @@ pub mod tiles;
 
 use std::sync::Arc;
 
-use crate::optics::material::Material;
-use crate::optics::random::Sequence;
-use crate::scene::Geometry;
-use crate::scene::camera::Camera;
-use crate::scene::environment::{Distribution, Environment};
-use crate::scene::light::{LightChoice, Lights};
-use crate::scene::texture::Textures;
+use crate::{
+    named::named,
+    optics::{material::Material, random::Sequence},
+    scene::{
+        Geometry,
+        camera::Camera,
+        environment::{Distribution, Environment},
+        light::{LightChoice, Lights},
+        texture::Textures,
+    },
+};
 
-use crate::named::named;
 use plan::Plan;
 
 /// A render job: everything that an image depends on. Cheap to clone.

@@ -1,7 +1,6 @@
 //! Map of numerical trouble in a render: f32 against f64, dropped samples, rays that start on the wrong side.
 
-use crate::named::named;
-use crate::optics::vector::Vec3;
+use crate::{named::named, optics::vector::Vec3};
 
 /// Largest error of f32 against f64, relative as in [`relative_error`], that counts as none.
 pub const ERROR_BOUND: f64 = 1e-3;

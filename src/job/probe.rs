@@ -3,10 +3,10 @@
 
 use bytemuck::Zeroable as _;
 
-use crate::optics::lobe::LobeShape;
-use crate::optics::material::Material;
-use crate::optics::vector::Vec3;
-use crate::scene::Geometry;
+use crate::{
+    optics::{lobe::LobeShape, material::Material, vector::Vec3},
+    scene::Geometry,
+};
 
 /// Scene data that the inputs refer to.
 #[derive(Clone, Copy, Debug)]

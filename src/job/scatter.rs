@@ -1,10 +1,12 @@
 //! Clouds of lobe samples: request and result, for either engine.
 
-use crate::optics::frame::Frame;
-use crate::optics::lobe::lobe_middle;
-use crate::optics::lobe::model::{LobeModel, view_direction};
-use crate::optics::real::Real;
-use crate::optics::vector::{Vec3, vec3};
+use crate::optics::{
+    frame::Frame,
+    lobe::lobe_middle,
+    lobe::model::{LobeModel, view_direction},
+    real::Real,
+    vector::{Vec3, vec3},
+};
 
 /// A request for samples of a lobe, in the local frame with the normal +z and the mirror direction in the x–z half plane x ≥
 /// 0; refracted samples have z < 0.

@@ -2,13 +2,17 @@
 
 use std::f64::consts::FRAC_1_PI;
 
-use crate::analysis::fit::{CurveTarget, Merl, fit_curve, roughness};
-use crate::analysis::sphere_grid::{Side, SphereGrid};
-use crate::document::MaterialSettings;
-use crate::optics::fresnel::Fresnel;
-use crate::optics::lobe::Horizon;
-use crate::optics::lobe::model::{LobeModel, NORMAL, view_direction};
-use crate::optics::vector::Vec3;
+use crate::{
+    analysis::fit::{CurveTarget, Merl, fit_curve, roughness},
+    analysis::sphere_grid::{Side, SphereGrid},
+    document::MaterialSettings,
+    optics::{
+        fresnel::Fresnel,
+        lobe::Horizon,
+        lobe::model::{LobeModel, NORMAL, view_direction},
+        vector::Vec3,
+    },
+};
 
 /// Roughnesses between which the highlight is looked for: a rougher lobe cannot be distinguished from the base.
 const ROUGHNESS_RANGE: [f64; 2] = [0.005, 0.5];

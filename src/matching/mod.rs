@@ -4,17 +4,23 @@ pub mod measured;
 
 use std::sync::Arc;
 
-use crate::analysis::fit::{
-    CurveFit, CurveTarget, Measure, Merl, Nearest, fit_curve, nearest_roughness, roughness, total_variation,
+use crate::{
+    analysis::fit::{
+        CurveFit, CurveTarget, Measure, Merl, Nearest, fit_curve, nearest_roughness, roughness, total_variation,
+    },
+    analysis::sphere_grid::{Profile, Side, SphereGrid},
+    document::MaterialSettings,
+    document::custom_curve::{CustomCurve, POINTS_MAX, XI_STEP_MIN},
+    optics::{
+        curve::{CUSTOM_INTERVALS, Curve},
+        lobe::{
+            Horizon, Lobe,
+            model::{LobeModel, roughness_min, view_direction},
+        },
+        vector::{Vec3, vec3},
+    },
+    plot::lobe_view::{Axis, LinePlot, Series, slice_angles_deg},
 };
-use crate::analysis::sphere_grid::{Profile, Side, SphereGrid};
-use crate::document::MaterialSettings;
-use crate::document::custom_curve::{CustomCurve, POINTS_MAX, XI_STEP_MIN};
-use crate::optics::curve::{CUSTOM_INTERVALS, Curve};
-use crate::optics::lobe::model::{LobeModel, roughness_min, view_direction};
-use crate::optics::lobe::{Horizon, Lobe};
-use crate::optics::vector::{Vec3, vec3};
-use crate::plot::lobe_view::{Axis, LinePlot, Series, slice_angles_deg};
 
 /// Largest distances that a fitted curve may have: long tails need more than 1.
 const DISTANCES_MAX: [f64; 6] = [1.0, 1.5, 2.5, 4.0, 7.0, 12.0];

@@ -4,17 +4,19 @@
 //! too. It then holds the four integrals of which every Fresnel factor's albedo is a sum ([`rough_albedo`]), for the whole
 //! and for the dielectric alone, which covers the base.
 
-use super::frame::{Frame, frame_from_normal};
-use super::fresnel::{
-    Fresnel, FresnelTerms, edge_darkening, edge_shape, fresnel, fresnel_dielectric, fresnel_f0, fresnel_schlick,
-    half_vector_cosine,
+use super::{
+    frame::{Frame, frame_from_normal},
+    fresnel::{
+        Fresnel, FresnelTerms, edge_darkening, edge_shape, fresnel, fresnel_dielectric, fresnel_f0, fresnel_schlick,
+        half_vector_cosine,
+    },
+    lobe::{LobeShape, lobe_sample, stretch_from_anisotropy},
+    material::{Material, Surface},
+    random::even_point,
+    refraction::refracted_square,
+    table::{NODE_LENGTH, look_up_number, node_below},
+    thin_film::{film_change_of_dielectric, film_change_of_metal, mean_facet},
 };
-use super::lobe::{LobeShape, lobe_sample, stretch_from_anisotropy};
-use super::material::{Material, Surface};
-use super::random::even_point;
-use super::refraction::refracted_square;
-use super::table::{NODE_LENGTH, look_up_number, node_below};
-use super::thin_film::{film_change_of_dielectric, film_change_of_metal, mean_facet};
 use crate::optics::prelude::*;
 use crate::parallel;
 

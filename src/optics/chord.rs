@@ -11,9 +11,11 @@
 //! each other. In the second, W dv = dD. So a curve whose h is a polynomial or 1/D costs one logarithm at any roughness, and
 //! a custom density costs the same per interval. Only the long tail needs quadrature.
 
-use super::curve::{CUSTOM_INTERVALS, Curve, Integral, curve_distance_max, curve_h};
-use super::numeric::log1p;
-use super::table::NODE_LENGTH;
+use super::{
+    curve::{CUSTOM_INTERVALS, Curve, Integral, curve_distance_max, curve_h},
+    numeric::log1p,
+    table::NODE_LENGTH,
+};
 use crate::optics::prelude::*;
 
 /// Angle from the mirror direction, in radians, that f32 resolves: within it a density's peak is cut off.

@@ -1,8 +1,7 @@
 //! The medium of a coat that absorbs by the length of the way through it. Source: OpenPBR 1.1, "View-dependent absorption" and
 //! "Emission".
 
-use super::material::Material;
-use super::refraction::refracted_square;
+use super::{material::Material, refraction::refracted_square};
 use crate::optics::prelude::*;
 
 /// Most of the light that a coat reflects back inside: at 1 nothing would get out.

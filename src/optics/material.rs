@@ -8,12 +8,14 @@
 
 use bytemuck::{Pod, Zeroable};
 
-use super::curve::Curve;
-use super::frame::{Frame, frame_from_normal};
-use super::fresnel::{Fresnel, FresnelTerms, fresnel_f0};
-use super::lobe::{Horizon, Lobe, LobeShape};
-use super::target::{TARGETS, TextureTarget};
-use super::thin_film::FilmTerms;
+use super::{
+    curve::Curve,
+    frame::{Frame, frame_from_normal},
+    fresnel::{Fresnel, FresnelTerms, fresnel_f0},
+    lobe::{Horizon, Lobe, LobeShape},
+    target::{TARGETS, TextureTarget},
+    thin_film::FilmTerms,
+};
 use crate::optics::prelude::*;
 
 /// Textures of a [`Material`] in whole rows of 16 bytes.

@@ -1,9 +1,7 @@
 //! Common part of the microfacet lobes: GGX's distribution and its height-correlated Smith masking. All vectors in the local
 //! frame, n = +z. Source: Walter et al. 2007; Heitz 2014 and 2018.
 
-use super::frame::{Frame, local_from_world};
-use super::fresnel::half_vector_cosine;
-use super::numeric::normalize_or;
+use super::{frame::Frame, frame::local_from_world, fresnel::half_vector_cosine, numeric::normalize_or};
 use crate::optics::prelude::*;
 
 /// The widths along tangent and bitangent.

@@ -5,8 +5,7 @@
 //! appears (Nicodemus 1963; Veach 1997, section 5.2). Source of the facets' density and weight: Walter et al., "Microfacet
 //! models for refraction through rough surfaces", EGSR 2007, equations 16, 17 and 21.
 
-use super::frame::Frame;
-use super::numeric::normalize_or;
+use super::{frame::Frame, numeric::normalize_or};
 use crate::optics::prelude::*;
 
 /// A refracted direction.

@@ -1,7 +1,10 @@
 //! f32 and f64 as [`Real`] numbers.
 
-use super::elementary::{self, functions};
-use super::real::{Mask, Real, Scalar, inlined};
+use super::{
+    elementary,
+    elementary::functions,
+    real::{Mask, Real, Scalar, inlined},
+};
 
 impl Mask for bool {
     inlined! {

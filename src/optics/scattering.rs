@@ -7,24 +7,22 @@
 //! reflects all light. What a clear interface loses goes on; from within most of it is reflected. The base below a dielectric
 //! takes what its lobe loses, so that needs no factor.
 
-use super::albedo::{
-    ALBEDO_LENGTH, ALBEDO_NODES, ROUGH_ALBEDO_LENGTH, ROUGHNESS_NODES, albedo_lookup, node_turn, rough_albedo_lookup,
-    table_row, view_at,
+use super::{
+    albedo::{
+        ALBEDO_LENGTH, ALBEDO_NODES, ROUGH_ALBEDO_LENGTH, ROUGHNESS_NODES, albedo_lookup, node_turn,
+        rough_albedo_lookup, table_row, view_at,
+    },
+    fresnel::{FresnelTerms, fresnel, fresnel_dielectric, fresnel_f0, fresnel_parts, fresnel_transmitted},
+    lanes::{InLanes, in_lanes},
+    lobe::{LobeShape, ggx::visible_normal, microfacet_alpha},
+    material::{COMPENSATES, Material, Surface},
+    microfacet::{Alpha, smith_g1_over_cosine, smith_g2_over_cosine},
+    random::even_point,
+    refraction::refracted,
+    thin_film::film_passed,
 };
-use super::fresnel::{
-    FresnelTerms, fresnel, fresnel_dielectric, fresnel_f0, fresnel_parts, fresnel_transmitted,
-};
-use super::lanes::{InLanes, in_lanes};
-use super::lobe::ggx::visible_normal;
-use super::lobe::{LobeShape, microfacet_alpha};
-use super::material::{COMPENSATES, Material, Surface};
-use super::microfacet::{Alpha, smith_g1_over_cosine, smith_g2_over_cosine};
-use super::random::even_point;
-use super::refraction::refracted;
-use super::thin_film::film_passed;
-use crate::instructions::level;
 use crate::optics::prelude::*;
-use crate::parallel;
+use crate::{instructions::level, parallel};
 
 inlined! {
     /// Factor by which a clear interface refracts, or reflects from within, more than single scattering does, linear RGB. A
@@ -178,7 +176,11 @@ pub fn scattering_table(material: &Material<f64>, samples: u32) -> Vec<f32> {
 }
 
 /// The numbers of [`scattering_table`] from the means of [`Kept`].
-fn kept_shares(material: &Material<f64>, cosine: f64, [metal, passed, outer, inner_passed, inner, met]: [f64; 6]) -> [f32; 4] {
+fn kept_shares(
+    material: &Material<f64>,
+    cosine: f64,
+    [metal, passed, outer, inner_passed, inner, met]: [f64; 6],
+) -> [f32; 4] {
     // A facet seen from within lets through what it refracts and a part of what is lost; the rest is reflected, as far as that
     // spreads the weights of paths no further.
     let through = inner_passed + 0.4 * material.roughness * (1.0 - met) * (1.0 - inner - inner_passed);
@@ -190,7 +192,11 @@ fn kept_shares(material: &Material<f64>, cosine: f64, [metal, passed, outer, inn
     let head_on = Vec3::splat(fresnel_f0(material.fresnel_terms(false).ior));
     let outer = outer * facet_gain(head_on, Vec3::ONE, metal.max(LEAST_KEPT), cosine).x;
     let tiny = f64::MIN_POSITIVE;
-    let shares = [passed / (1.0 - outer).max(tiny), inner_passed / (1.0 - reflected).max(tiny), inner / reflected.max(tiny)];
+    let shares = [
+        passed / (1.0 - outer).max(tiny),
+        inner_passed / (1.0 - reflected).max(tiny),
+        inner / reflected.max(tiny),
+    ];
     let [outside, inside, reflected] = shares.map(|share| share.max(LEAST_KEPT));
     [metal.max(LEAST_KEPT), outside, inside, reflected].map(|x| x as f32)
 }
@@ -273,7 +279,10 @@ impl Kept<'_> {
                     let film = side.film(wo.dot(h));
                     let met = side.reflected(wo.dot(h), film);
                     let film = if *is_apart { side.film(wo.dot(refracting)) } else { film };
-                    add(&mut sums[1 + 2 * number], side.let_through(*through, wo, refracting, film));
+                    add(
+                        &mut sums[1 + 2 * number],
+                        side.let_through(*through, wo, refracting, film),
+                    );
                     add(&mut sums[2 + 2 * number], met * mirrored);
                     if number == 1 {
                         add(&mut sums[5], met);

@@ -3,10 +3,12 @@
 use image::RgbImage;
 use plotters::style::{Color, RGBColor};
 
-use super::axes::short;
-use super::drawing::{Colors, Drawing, Figure, LEFT, PALETTE, Point, RIGHT, TITLE, circle};
-use super::lines::LETTER;
-use super::lobe_view::Axis;
+use super::{
+    axes::short,
+    drawing::{Colors, Drawing, Figure, LEFT, PALETTE, Point, RIGHT, TITLE, circle},
+    lines::LETTER,
+    lobe_view::Axis,
+};
 use crate::job::scatter::{ScatterCloud, ScatterRequest};
 use crate::optics::vector::Vec3;
 

@@ -1,16 +1,17 @@
 //! A drawing: a list of shapes in points, painted as SVG or as pixels.
 
-use std::error::Error;
-use std::io::Cursor;
-use std::path::{Path, PathBuf};
-use std::sync::Once;
+use std::{error::Error, io::Cursor, path::Path, path::PathBuf, sync::Once};
 
 use image::RgbImage;
-use plotters::coord::Shift;
-use plotters::element::DashedPathElement;
 use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, Pos, VPos};
-use plotters::style::{FontStyle, register_font};
+use plotters::{
+    coord::Shift,
+    element::DashedPathElement,
+    style::{
+        FontStyle, register_font,
+        text_anchor::{HPos, Pos, VPos},
+    },
+};
 
 /// A place, from the top left.
 pub type Point = [f64; 2];

@@ -1,8 +1,10 @@
 //! Line plots over two axes, or around a point.
 
-use super::axes::{number, round_step};
-use super::drawing::{CENTER, Colors, Drawing, Figure, LEFT, PALETTE, Point, TOP};
-use super::lobe_view::{LinePlot, Series};
+use super::{
+    axes::{number, round_step},
+    drawing::{CENTER, Colors, Drawing, Figure, LEFT, PALETTE, Point, TOP},
+    lobe_view::{LinePlot, Series},
+};
 
 /// Width without the legend.
 const WIDTH: f64 = 860.0;

@@ -2,9 +2,11 @@
 
 use plotters::style::{Color, RGBColor, WHITE};
 
-use super::axes::number;
-use super::drawing::{CENTER, Colors, Drawing, Figure, LEFT, NAME, Point, TITLE, circle, paneled};
-use super::lobe_view::{DiscMap, MapPlot};
+use super::{
+    axes::number,
+    drawing::{CENTER, Colors, Drawing, Figure, LEFT, NAME, Point, TITLE, circle, paneled},
+    lobe_view::{DiscMap, MapPlot},
+};
 
 const PANEL: f64 = 410.0;
 const STRIP: f64 = 110.0;

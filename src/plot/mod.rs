@@ -8,7 +8,7 @@ pub mod lobe_view;
 mod maps;
 mod solids;
 
-pub(crate) use axes::{number, short};
+pub use axes::{number, short};
 pub use charts::{BarPlot, NamedPoint, PictureSheet, PointPlot, ScatterPlot};
 pub use drawing::{Figure, PlotError, plot_file, plot_picture};
 pub use maps::scale_color;

@@ -2,9 +2,11 @@
 
 use plotters::style::RGBColor;
 
-use super::axes::short;
-use super::drawing::{CENTER, Colors, Drawing, Figure, LEFT, NAME, PALETTE, Point, circle, paneled};
-use super::lobe_view::{Solid, SolidPlot};
+use super::{
+    axes::short,
+    drawing::{CENTER, Colors, Drawing, Figure, LEFT, NAME, PALETTE, Point, circle, paneled},
+    lobe_view::{Solid, SolidPlot},
+};
 use crate::optics::vector::{Vec3, vec3};
 
 const PANEL: Point = [440.0, 312.0];

@@ -1,9 +1,13 @@
 //! Work beside the window whose latest request wins: plots, fits, checks.
 
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
-use std::sync::mpsc::{Sender, channel};
-use std::sync::{Arc, Mutex};
-use std::time::Duration;
+use std::{
+    sync::{
+        Arc, Mutex,
+        atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed},
+        mpsc::{Sender, channel},
+    },
+    time::Duration,
+};
 
 use crate::panics::{caught, lock};
 

@@ -1,9 +1,11 @@
 //! Schedule of error measurements of a session, their history, and the goals of the next round.
 
-use crate::analysis::adaptive::{Round, next_goals};
-use crate::analysis::noise::{Noise, noise};
-use crate::document::RenderSettings;
-use crate::job::{film::Film, tiles::Schedule};
+use crate::{
+    analysis::adaptive::{Round, next_goals},
+    analysis::noise::{Noise, noise},
+    document::RenderSettings,
+    job::{film::Film, tiles::Schedule},
+};
 
 /// Largest share of time for error measurements; twice as much near the end, so that the render does not overshoot.
 const COST_SHARE: f64 = 0.015;

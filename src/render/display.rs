@@ -2,12 +2,14 @@
 
 use std::ops::Range;
 
-use crate::document::ViewSettings;
-use crate::job::film::Image;
-use crate::optics::tone::{Grade, srgb_from_linear, tone_map};
-use crate::optics::vector::vec3;
-use crate::parallel;
-use crate::store::lut;
+use crate::{
+    document::ViewSettings,
+    job::film::Image,
+    optics::tone::{Grade, srgb_from_linear, tone_map},
+    optics::vector::vec3,
+    parallel,
+    store::lut,
+};
 
 use super::lens;
 

@@ -1,7 +1,6 @@
 //! Why a session refuses a document or fails.
 
-use crate::compile::AssetError;
-use crate::gpu::GpuError;
+use crate::{compile::AssetError, gpu::GpuError};
 
 /// Why a session refuses a document or fails.
 #[derive(Debug, thiserror::Error)]

@@ -1,8 +1,6 @@
 //! An image of a film, with what belongs to it.
 
-use std::sync::Arc;
-use std::sync::atomic::AtomicU64;
-use std::sync::atomic::Ordering::Relaxed;
+use std::sync::{Arc, atomic::AtomicU64, atomic::Ordering::Relaxed};
 
 use super::{denoise::Denoised, output::Rendered, shown::PixelFacts};
 use crate::job::film::Image;

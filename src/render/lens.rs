@@ -1,8 +1,6 @@
 //! What a lens does to an image before it is shown: glare and vignette. The render itself is left alone.
 
-use crate::document::ViewSettings;
-use crate::job::film::Image;
-use crate::parallel;
+use crate::{document::ViewSettings, job::film::Image, parallel};
 
 /// The widest glow as a share of the image's shorter side, and how many there are, each half as wide as the one before.
 const WIDEST: f64 = 0.25;

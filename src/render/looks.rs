@@ -4,17 +4,17 @@ use std::{sync::Arc, time::Duration};
 
 use image::RgbImage;
 
-use super::EngineChoice;
-use super::denoise::Library;
-use super::display::display;
-use super::error::SessionError;
-use super::session::Session;
-use super::step_denoiser::StepDenoiser;
-use crate::analysis::halves::Halves;
-use crate::document::{Denoise, Document, MaterialSettings, RenderSettings, ViewSettings};
-use crate::job::film::{Film, Image};
-use crate::plot::scale_color;
-use crate::scene::ModelSource;
+use super::{
+    EngineChoice, denoise::Library, display::display, error::SessionError, session::Session,
+    step_denoiser::StepDenoiser,
+};
+use crate::{
+    analysis::halves::Halves,
+    document::{Denoise, Document, MaterialSettings, RenderSettings, ViewSettings},
+    job::film::{Film, Image},
+    plot::scale_color,
+    scene::ModelSource,
+};
 
 /// Width and height of each render, in pixels.
 pub const SIDE: u32 = 160;

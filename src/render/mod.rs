@@ -32,8 +32,10 @@ mod workshop;
 
 pub use crate::compile::{Assets, Reloaded};
 pub use convergence::Measurement;
-pub use engine::{EngineChoice, EngineInfo, EngineKind, MachineOptions, Precision, RayQueries, Sampler};
-pub(crate) use engine::{cpu_name, device_for_functions};
+pub use engine::{
+    EngineChoice, EngineInfo, EngineKind, MachineOptions, Precision, RayQueries, Sampler, cpu_name,
+    device_for_functions,
+};
 pub use error::SessionError;
 pub use output::Layers;
 pub use progress::{Progress, StopReason, beyond_bounces};

@@ -1,22 +1,21 @@
 //! Image output.
 
-use std::io::{self, Seek, Write};
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::{io, io::Seek, io::Write, path::Path, path::PathBuf, sync::Arc};
 
 use exr::prelude::{
     AnyChannel, AnyChannels, Encoding, FlatSamples, Layer, LayerAttributes, LineOrder, WritableImage as _,
 };
-use image::Rgb;
-use image::codecs::hdr::HdrEncoder;
+use image::{Rgb, codecs::hdr::HdrEncoder};
 
 use super::{display::display, light_layers::LightLayer, sums::KeptFilm};
-use crate::document::Document;
-use crate::import::endings::ending;
-use crate::job::features::Features;
-use crate::job::film::{Film, Image};
-use crate::optics::primaries::REC709;
-use crate::store::{FileError, picture::png_bytes, project::own_text, replace::save_by};
+use crate::{
+    document::Document,
+    import::endings::ending,
+    job::features::Features,
+    job::film::{Film, Image},
+    optics::primaries::REC709,
+    store::{FileError, picture::png_bytes, project::own_text, replace::save_by},
+};
 
 /// Errors of image output.
 #[derive(Debug, thiserror::Error)]

@@ -3,8 +3,7 @@
 use std::sync::Arc;
 
 use super::{background::Responder, seen_map::fitted};
-use crate::cpu::precision::precision;
-use crate::job::{Job, precision::PrecisionMap};
+use crate::{cpu::precision::precision, job::Job, job::precision::PrecisionMap};
 
 /// Longest side of the map in pixels.
 const SIDE_MAX_PX: u32 = 320;

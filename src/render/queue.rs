@@ -1,21 +1,17 @@
 //! Queue of renders in the background, one after the other, with their own thread and session.
 
-use std::io;
-use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex};
-use std::thread::Thread;
-use std::time::{Duration, Instant};
+use std::{io, path::Path, path::PathBuf, sync::Arc, sync::Mutex, thread::Thread, time::Duration, time::Instant};
 
-use super::engine::EngineChoice;
-use super::output;
-use super::session::Session;
-use super::step_denoiser::StepDenoiser;
-use super::to_end::{step_to_end, submit};
-use super::turntable::{self, Turntable};
-use crate::compile::Assets;
-use crate::document::Document;
-use crate::panics::{caught, lock};
-use crate::store::replace::check_saving;
+use super::{
+    engine::EngineChoice,
+    output,
+    session::Session,
+    step_denoiser::StepDenoiser,
+    to_end::{step_to_end, submit},
+    turntable,
+    turntable::Turntable,
+};
+use crate::{compile::Assets, document::Document, panics::caught, panics::lock, store::replace::check_saving};
 
 /// Pause of a render while something moves in the window.
 const GIVES_WAY: Duration = Duration::from_millis(50);

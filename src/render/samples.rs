@@ -2,16 +2,21 @@
 
 use std::sync::Arc;
 
-use super::background::Responder;
-use super::engine::{EngineChoice, Sampler};
-use crate::analysis::fit::{Measure, Nearest, nearest_roughness};
-use crate::analysis::histogram::{angle_density, angle_histogram};
-use crate::job::scatter::{ScatterCloud, ScatterRequest};
-use crate::optics::curve::Curve;
-use crate::optics::frame::frame_from_normal;
-use crate::optics::lobe::model::{LobeModel, view_direction};
-use crate::optics::lobe::{Horizon, Lobe};
-use crate::optics::vector::Vec3;
+use super::{background::Responder, engine::EngineChoice, engine::Sampler};
+use crate::{
+    analysis::fit::{Measure, Nearest, nearest_roughness},
+    analysis::histogram::{angle_density, angle_histogram},
+    job::scatter::{ScatterCloud, ScatterRequest},
+    optics::{
+        curve::Curve,
+        frame::frame_from_normal,
+        lobe::{
+            Horizon, Lobe,
+            model::{LobeModel, view_direction},
+        },
+        vector::Vec3,
+    },
+};
 
 /// Bins of the angle's histogram over [0, π].
 const ANGLE_BINS: usize = 180;

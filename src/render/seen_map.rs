@@ -3,10 +3,7 @@
 use std::sync::Arc;
 
 use super::background::Responder;
-use crate::job::Job;
-use crate::optics::vector::Vec3;
-use crate::parallel;
-use crate::scene::NO_OBJECT;
+use crate::{job::Job, optics::vector::Vec3, parallel, scene::NO_OBJECT};
 
 /// Longest side of the map in pixels.
 const SIDE_MAX_PX: u32 = 2048;

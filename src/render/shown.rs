@@ -1,14 +1,16 @@
 //! Views of a render in the window: the image, or maps of per-pixel quantities.
 
 use super::display::{MIDDLE_GREY, display, exposure};
-use crate::analysis::noise::relative_errors;
-use crate::document::ViewSettings;
-use crate::job::features::Features;
-use crate::job::film::{Film, Image};
-use crate::named::named;
-use crate::optics::{tone::srgb_from_linear, vector::vec3};
-use crate::parallel;
-use crate::plot::scale_color;
+use crate::{
+    analysis::noise::relative_errors,
+    document::ViewSettings,
+    job::features::Features,
+    job::film::{Film, Image},
+    named::named,
+    optics::{tone::srgb_from_linear, vector::vec3},
+    parallel,
+    plot::scale_color,
+};
 
 /// Stops to either side of middle grey that false colours span.
 const STOPS: f64 = 6.0;

@@ -1,9 +1,6 @@
 //! The denoiser beside a session that is stepped to its end: by the command line, in turntables and studies.
 
-use super::denoise::{Denoised, Denoiser};
-use super::error::SessionError;
-use super::progress::Progress;
-use super::session::Session;
+use super::{denoise::Denoised, denoise::Denoiser, error::SessionError, progress::Progress, session::Session};
 use crate::document::{Denoise, Document};
 
 /// Factor by which samples grow between denoised images, while their error is the goal.

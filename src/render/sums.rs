@@ -5,21 +5,19 @@
 //! guides of each half's first samples are f32 (`sums.guides.even.…`), with their number. Light groups have sums of their own
 //! (`sums.light.NAME.even.…`). An attribute has the document and the sample ranges.
 
-use std::borrow::Cow;
-use std::path::{Path, PathBuf};
+use std::{borrow::Cow, path::Path, path::PathBuf};
 
 use exr::prelude::{
     AnyChannels, AttributeValue, FlatSamples, Layer, LayerAttributes, ReadChannels as _, ReadLayers as _, Text, read,
 };
 
-use crate::document::{Document, GroupName, change::Change, effect::without_what_is_off};
-use crate::job::features::Features;
-use crate::job::film::{Extras, Film};
-use crate::job::guides::GUIDE_SAMPLES;
-use crate::render::denoise::Noisy;
-use crate::render::light_layers::{LightLayer, light_groups, light_layers, mixed};
-use crate::store::FileError;
-use crate::store::project::{document_text, parse_document};
+use crate::{
+    document::{Document, GroupName, change::Change, effect::without_what_is_off},
+    job::{features::Features, film::Extras, film::Film, guides::GUIDE_SAMPLES},
+    render::denoise::Noisy,
+    render::light_layers::{LightLayer, light_groups, light_layers, mixed},
+    store::{FileError, project::document_text, project::parse_document},
+};
 
 /// The attribute of a file with sums: a line with the numbers of the samples, one with the world's units, and the document.
 /// One alone, as several are written in another order each time.

@@ -1,24 +1,29 @@
 //! Thumbnails of materials and environments, made in the background and cached on disk.
 
-use std::collections::HashMap;
-use std::hash::{DefaultHasher, Hash as _, Hasher as _};
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
-use std::time::Duration;
+use std::{
+    collections::HashMap,
+    hash::{DefaultHasher, Hash as _, Hasher as _},
+    path::{Path, PathBuf},
+    sync::{Arc, atomic::AtomicBool},
+    time::Duration,
+};
 
 use image::{ImageFormat, RgbaImage};
 
-use super::background::Responder;
-use super::display::display;
-use super::looks::{ball, denoise_if_possible};
-use super::step_denoiser::StepDenoiser;
-use super::{EngineChoice, Session, SessionError};
-use crate::document::{Document, MaterialSettings};
-use crate::import::environment::load;
-use crate::scene::ModelSource;
-use crate::scene::environment::{Environment, EnvironmentSource, thumbnail};
-use crate::store::{picture::png_bytes, preset::material_text, replace::save_atomically};
+use super::{
+    EngineChoice, Session, SessionError,
+    background::Responder,
+    display::display,
+    looks::{ball, denoise_if_possible},
+    step_denoiser::StepDenoiser,
+};
+use crate::{
+    document::{Document, MaterialSettings},
+    import::environment::load,
+    scene::ModelSource,
+    scene::environment::{Environment, EnvironmentSource, thumbnail},
+    store::{picture::png_bytes, preset::material_text, replace::save_atomically},
+};
 
 /// Columns and rows of a material's thumbnail.
 const SIDE: u32 = 192;

@@ -2,12 +2,10 @@
 
 use std::time::Duration;
 
-use super::denoise::Denoised;
-use super::engine::EngineChoice;
-use super::error::SessionError;
-use super::progress::Progress;
-use super::session::Session;
-use super::step_denoiser::StepDenoiser;
+use super::{
+    denoise::Denoised, engine::EngineChoice, error::SessionError, progress::Progress, session::Session,
+    step_denoiser::StepDenoiser,
+};
 use crate::document::Document;
 
 /// Session step between two checks for a stop.

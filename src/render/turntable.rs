@@ -2,14 +2,18 @@
 
 use std::path::{Path, PathBuf};
 
-use super::display::display;
-use super::engine::EngineChoice;
-use super::session::Session;
-use super::step_denoiser::StepDenoiser;
-use super::to_end::{step_to_end, submit};
-use crate::document::Document;
-use crate::document::turntable::{Turn, turned};
-use crate::store::{FileError, replace::check_saving, video::Video};
+use super::{
+    display::display,
+    engine::EngineChoice,
+    session::Session,
+    step_denoiser::StepDenoiser,
+    to_end::{step_to_end, submit},
+};
+use crate::{
+    document::Document,
+    document::turntable::{Turn, turned},
+    store::{FileError, replace::check_saving, video::Video},
+};
 
 /// Frames a second of a video at first.
 pub const FPS: f64 = 24.0;

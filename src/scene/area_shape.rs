@@ -2,9 +2,7 @@
 
 use glam::{DQuat, DVec3};
 
-use super::camera::{orbit_direction, right_and_up};
-use super::mesh::Mesh;
-use super::shapes;
+use super::{camera::orbit_direction, camera::right_and_up, mesh::Mesh, shapes};
 
 /// Placement of an area light. Positions are relative to the centre of the model's bounding box; they and lengths are in
 /// units of its bounding radius.

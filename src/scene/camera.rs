@@ -1,10 +1,9 @@
 //! The camera: a thin lens or parallel rays, and the pixel filter that they are drawn from.
 
-use crate::named::named;
+use crate::{named::named, optics::warp::uniform_disc};
 use glam::DVec3;
 
 use crate::optics::prelude::*;
-use crate::optics::warp::uniform_disc;
 
 named! {
     /// Pixel filter: distribution of a pixel's samples around its centre.

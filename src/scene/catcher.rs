@@ -10,12 +10,13 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 
-use super::area_shape::AreaShape;
-use super::environment::{Environment, environment_local_from_world, environment_radiance};
-use super::ground::HALF_SIDE;
+use super::{
+    area_shape::AreaShape,
+    environment::{Environment, environment_local_from_world, environment_radiance},
+    ground::HALF_SIDE,
+};
 use crate::optics::prelude::*;
-use crate::optics::table::NODE_LENGTH;
-use crate::parallel;
+use crate::{optics::table::NODE_LENGTH, parallel};
 
 /// Nodes per side with area lights; without them the light is uniform.
 const SIDE: usize = 128;

@@ -6,17 +6,19 @@ use std::{cell::LazyCell, sync::Arc};
 use fearless_simd::Level;
 use glam::{DMat4, DVec3};
 
-use super::area_shape::AreaShape;
-use super::coarse::{is_coarse, leaning_areas};
-use super::convex::is_convex;
-use super::ground::Ground;
-use super::hierarchy::{EntryPoints, PACKET, Packet, PacketHits, Placement, Wide};
-use super::instanced::{Instance, Instanced, Traceable};
-use super::intersect::{Hit, RayFrame};
-use super::loading::{Cancelled, Loading};
-use super::memory::prefetch;
-use super::model::Model;
-use super::part::{NO_OBJECT, Part, Vertex, exact, is_finite, is_traceable};
+use super::{
+    area_shape::AreaShape,
+    coarse::{is_coarse, leaning_areas},
+    convex::is_convex,
+    ground::Ground,
+    hierarchy::{EntryPoints, PACKET, Packet, PacketHits, Placement, Wide},
+    instanced::{Instance, Instanced, Traceable},
+    intersect::{Hit, RayFrame},
+    loading::{Cancelled, Loading},
+    memory::prefetch,
+    model::Model,
+    part::{NO_OBJECT, Part, Vertex, exact, is_finite, is_traceable},
+};
 use crate::{instructions, parallel};
 
 /// Gap between the lowest point and the ground, in bounding radii: enough that flat bottoms do not flicker.

@@ -5,12 +5,14 @@ use std::sync::OnceLock;
 use fearless_simd::Level;
 use glam::{DAffine3, DMat4, DQuat, DVec3};
 
-use super::coarse::leaning_areas;
-use super::hierarchy::{Bottom, Hierarchy, Placement, Wide, triangle_of_box};
-use super::intersect::{Hit, RayFrame};
-use super::loading::{Cancelled, Loading};
-use super::mesh::{Mesh, MeshInstance};
-use super::part::{NO_OBJECT, Part, is_finite, is_traceable};
+use super::{
+    coarse::leaning_areas,
+    hierarchy::{Bottom, Hierarchy, Placement, Wide, triangle_of_box},
+    intersect::{Hit, RayFrame},
+    loading::{Cancelled, Loading},
+    mesh::{Mesh, MeshInstance},
+    part::{NO_OBJECT, Part, is_finite, is_traceable},
+};
 use crate::parallel;
 
 /// Instances of repeated meshes. Their triangles are numbered instance by instance.

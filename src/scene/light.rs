@@ -10,18 +10,22 @@ use std::f64::consts::PI;
 
 use bytemuck::{Pod, Zeroable};
 
-use super::alias::{alias_table, grid_place};
-use super::environment::Environment;
-use super::geometry::Geometry;
-use super::intersect::triangle_normal;
-use super::light_profile::profile_share;
-use super::part::exact;
-use super::surface::{POSITION_ERROR, position_error};
-use super::texture::{TextureTarget, Textures, emission_at, multiply_by, uvs_at, vertex_factors};
-use crate::optics::coat_medium::coat_over_emission;
-use crate::optics::material::{COAT_ABSORBS, HAS_BOX, HAS_PROFILE, Material};
-use crate::optics::numeric::normalize_or;
+use super::{
+    alias::{alias_table, grid_place},
+    environment::Environment,
+    geometry::Geometry,
+    intersect::triangle_normal,
+    light_profile::profile_share,
+    part::exact,
+    surface::{POSITION_ERROR, position_error},
+    texture::{TextureTarget, Textures, emission_at, multiply_by, uvs_at, vertex_factors},
+};
 use crate::optics::prelude::*;
+use crate::optics::{
+    coat_medium::coat_over_emission,
+    material::{COAT_ABSORBS, HAS_BOX, HAS_PROFILE, Material},
+    numeric::normalize_or,
+};
 
 /// An entry of the alias table over the emitting triangles.
 #[repr(C)]

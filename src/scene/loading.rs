@@ -1,10 +1,13 @@
 //! Progress and cancellation of loading, and the files that it was refused.
 
 use crate::panics::lock;
-use std::io::{self, Read};
-use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
-use std::sync::{Arc, Mutex};
+use std::{
+    io,
+    io::Read,
+    path::Path,
+    path::PathBuf,
+    sync::{Arc, Mutex, atomic::AtomicBool, atomic::Ordering::Relaxed},
+};
 
 /// Progress and cancellation of one task; clones share them.
 #[derive(Clone, Debug, Default)]

@@ -1,9 +1,7 @@
 //! The solid that a place is in.
 
-use super::Geometry;
-use super::surface::{hit_place, passed_origin};
-use crate::optics::material::Material;
-use crate::optics::vector::{Vec3, vec3};
+use super::{Geometry, surface::hit_place, surface::passed_origin};
+use crate::optics::{material::Material, vector::Vec3, vector::vec3};
 
 /// The slot of no solid.
 pub const NO_MEDIUM: u32 = u32::MAX;

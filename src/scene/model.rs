@@ -4,14 +4,16 @@ use std::{fmt, ops::Range, path::PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::mesh::{Mesh, MeshInstance};
-use super::path_text::path_of_text;
-use super::report::ImportReport;
-use super::stage::{ModelCamera, ModelLight};
-use super::texture::{WRAP_CLAMP, WRAP_MIRRORED, WRAP_REPEAT};
-use super::{shapes, still_life, teapot};
-use crate::named::with_defaults;
-use crate::optics::target::TextureTarget;
+use super::{
+    mesh::{Mesh, MeshInstance},
+    path_text::path_of_text,
+    report::ImportReport,
+    shapes,
+    stage::{ModelCamera, ModelLight},
+    still_life, teapot,
+    texture::{WRAP_CLAMP, WRAP_MIRRORED, WRAP_REPEAT},
+};
+use crate::{named::with_defaults, optics::target::TextureTarget};
 
 /// Source of a model. On the command line and in files it is `teapot`, `sphere`, `plane`, `shaderball` or a path; a file of
 /// such a name is written with its folder (`./teapot`).

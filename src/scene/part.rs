@@ -4,11 +4,13 @@ use bytemuck::{Pod, Zeroable};
 use fearless_simd::Level;
 use glam::DVec3;
 
-use super::hierarchy::{Compressed, Hierarchy, Wide};
-use super::intersect::{Hit, RayFrame};
-use super::loading::{Cancelled, Loading};
-use super::memory::{in_large_pages, room_in_large_pages};
-use super::mesh::{Mesh, any_tangent};
+use super::{
+    hierarchy::{Compressed, Hierarchy, Wide},
+    intersect::{Hit, RayFrame},
+    loading::{Cancelled, Loading},
+    memory::{in_large_pages, room_in_large_pages},
+    mesh::{Mesh, any_tangent},
+};
 
 /// Stored value of alpha 1.
 const ALPHA_MAX: f32 = 32767.0;

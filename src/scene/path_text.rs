@@ -1,7 +1,6 @@
 //! Paths as text for JSON: as they are, or as `file:` addresses where they are not Unicode. No two paths share a text.
 
-use std::borrow::Cow;
-use std::path::{Path, PathBuf};
+use std::{borrow::Cow, path::Path, path::PathBuf};
 
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, percent_decode_str, percent_encode};
 use serde::{Deserialize as _, Deserializer, Serializer};

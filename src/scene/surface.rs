@@ -1,13 +1,18 @@
 //! A ray's hit made into a surface to shade.
 
-use crate::optics::frame::{frame_from_normal, frame_from_tangent};
-use crate::optics::material::{HAS_BOX, Material, NO_TEXTURE, Surface, VERTEX_BASE, VERTEX_EMISSION};
-use crate::optics::numeric::normalize_or;
 use crate::optics::prelude::*;
-use crate::optics::target::TextureTarget;
+use crate::optics::{
+    frame::{frame_from_normal, frame_from_tangent},
+    material::{HAS_BOX, Material, NO_TEXTURE, Surface, VERTEX_BASE, VERTEX_EMISSION},
+    numeric::normalize_or,
+    target::TextureTarget,
+};
 
-use super::texture::{Textures, Uvs, mapped_normal, opacity_at, uvs_at, vertex_factors};
-use super::{Geometry, Hit, Vertex, triangle_normal};
+use super::{
+    Geometry, Hit, Vertex,
+    texture::{Textures, Uvs, mapped_normal, opacity_at, uvs_at, vertex_factors},
+    triangle_normal,
+};
 
 /// Relative rounding error of a position: three products and sums, plus the box test and the transforms.
 pub const POSITION_ERROR: f64 = 1e-6;

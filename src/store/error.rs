@@ -1,7 +1,6 @@
 //! Why files cannot be read or written, and what to do.
 
-use std::io;
-use std::path::{Path, PathBuf};
+use std::{io, path::Path, path::PathBuf};
 
 /// Files larger than this many bytes are taken for something else.
 pub(super) const SIZE_MAX: u64 = 16 << 20;

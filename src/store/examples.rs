@@ -1,9 +1,10 @@
 //! Documents to begin with, one for each thing that the program promises.
 
 use super::preset::material_by_name;
-use crate::document::{AreaLight, CameraSettings, Document, GroundKind, GroundSettings, MaterialSettings};
-use crate::scene::ModelSource;
-use crate::scene::environment::EnvironmentSource;
+use crate::{
+    document::{AreaLight, CameraSettings, Document, GroundKind, GroundSettings, MaterialSettings},
+    scene::{ModelSource, environment::EnvironmentSource},
+};
 
 /// A document to begin with.
 #[derive(Clone, Copy, Debug)]

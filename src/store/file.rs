@@ -1,15 +1,14 @@
 //! Reading and writing JSON files with care.
 
-use std::borrow::Cow;
-use std::io::Read as _;
-use std::path::{Path, PathBuf};
+use std::{borrow::Cow, io::Read as _, path::Path, path::PathBuf};
 
 use serde_json::{Map, Value as Json};
 
 use super::error::{FileError, SIZE_MAX};
-use crate::import::limits;
-use crate::import::picture::shipped;
-use crate::scene::path_text::{path_of_text, path_text};
+use crate::{
+    import::{limits, picture::shipped},
+    scene::path_text::{path_of_text, path_text},
+};
 
 /// What was read from a file, and what was odd about it.
 #[derive(Clone, Debug, PartialEq)]

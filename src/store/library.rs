@@ -1,14 +1,10 @@
 //! A folder of the user's materials, those with images in folders of their own; what is removed can be restored.
 
-use std::collections::HashMap;
-use std::fs;
-use std::io;
-use std::path::{Path, PathBuf};
+use std::{collections::HashMap, fs, io, path::Path, path::PathBuf};
 
 use super::FileError;
 use super::preset::{command_line_name, load_material, save_material};
-use crate::document::MaterialSettings;
-use crate::import::endings::has_ending;
+use crate::{document::MaterialSettings, import::endings::has_ending};
 
 /// A file of the folder.
 #[derive(Clone, Debug, PartialEq)]

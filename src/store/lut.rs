@@ -2,12 +2,10 @@
 //!
 //! The crate that exists (`lut_parser` 2.1) refuses tables without a title, and most tables have none.
 
-use std::path::Path;
-use std::sync::Arc;
+use std::{path::Path, sync::Arc};
 
 use super::{FileError, file};
-use crate::import::remembered::Remembered;
-use crate::optics::tone::Lut;
+use crate::{import::remembered::Remembered, optics::tone::Lut};
 
 /// Most entries along a side, of curves and of a cube.
 const SIZES: [usize; 2] = [65536, 129];

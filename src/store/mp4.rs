@@ -2,17 +2,21 @@
 
 use std::num::NonZeroU32;
 
-use openh264::encoder::{
-    BitRate, Encoder, EncoderConfig, FrameRate, FrameType, MatrixCoefficients, QpRange, RateControlMode, VuiConfig,
+use openh264::{
+    OpenH264API, Timestamp,
+    encoder::{
+        BitRate, Encoder, EncoderConfig, FrameRate, FrameType, MatrixCoefficients, QpRange, RateControlMode, VuiConfig,
+    },
+    formats::{RgbSliceU8, YUVBuffer},
 };
-use openh264::formats::{RgbSliceU8, YUVBuffer};
-use openh264::{OpenH264API, Timestamp};
-use shiguredo_mp4::TrackKind;
-use shiguredo_mp4::bitstream::h264::{
-    H264NalUnitType, H264SampleEntryConfig, LengthSize, build_avc1_box_from_annexb, parse_annexb_nal_units,
+use shiguredo_mp4::{
+    TrackKind,
+    bitstream::h264::{
+        H264NalUnitType, H264SampleEntryConfig, LengthSize, build_avc1_box_from_annexb, parse_annexb_nal_units,
+    },
+    boxes::SampleEntry,
+    mux::{Mp4FileMuxer, Mp4FileMuxerOptions, Sample, estimate_maximum_moov_box_size},
 };
-use shiguredo_mp4::boxes::SampleEntry;
-use shiguredo_mp4::mux::{Mp4FileMuxer, Mp4FileMuxerOptions, Sample, estimate_maximum_moov_box_size};
 
 /// Whether this program can write them.
 pub(super) const IS_BUILT: bool = true;

@@ -3,10 +3,12 @@
 //! It is a hash of the names that lead away from the file, with a key that stays on this machine. Who changes a name does not
 //! have it.
 
-use std::hash::{BuildHasher as _, Hasher as _, RandomState};
-use std::io::Write as _;
-use std::path::{Path, PathBuf};
-use std::sync::OnceLock;
+use std::{
+    hash::{BuildHasher as _, Hasher as _, RandomState},
+    io::Write as _,
+    path::{Path, PathBuf},
+    sync::OnceLock,
+};
 
 use serde_json::Value as Json;
 use siphasher::sip128::{Hasher128 as _, SipHasher24};

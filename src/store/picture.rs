@@ -1,17 +1,16 @@
 //! Images that carry the document they show: PNG files with the project's JSON in a compressed iTXt chunk before the
 //! pixels. Any viewer shows the image; opening it here brings materials, camera and light back.
 
-use std::fs::File;
-use std::io::{BufRead, BufReader, Cursor, Seek};
-use std::path::Path;
+use std::{
+    fs::File,
+    io::{BufRead, BufReader, Cursor, Seek},
+    path::Path,
+};
 
 use png::text_metadata::ITXtChunk;
 
-use super::error::SIZE_MAX;
-use super::project;
-use super::{FileError, Loaded};
-use crate::document::Document;
-use crate::import::limits;
+use super::{FileError, Loaded, error::SIZE_MAX, project};
+use crate::{document::Document, import::limits};
 
 /// The keyword of the chunk.
 pub const KEYWORD: &str = "glossmith";

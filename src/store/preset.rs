@@ -4,21 +4,22 @@
 //! "material" the keys of [`PARAMETERS`]; those left out have their defaults. What this version does not know is kept
 //! and written back.
 
-use std::path::{Path, PathBuf};
-use std::sync::LazyLock;
+use std::{path::Path, path::PathBuf, sync::LazyLock};
 
 use serde_json::{Map, Value as Json, json};
 
-use super::own;
-use super::replace::save_atomically;
-use super::{FileError, Loaded, file};
-use crate::document::material::FILM_THICKNESS_MAX;
-use crate::document::parameter::{nearest, nearest_key};
-use crate::document::{MaterialSettings, PARAMETERS, ParameterError, TextureError, texture_from_json, texture_to_json};
-use crate::import::kept_keys;
-use crate::optics::layer::fuzz::fuzz_of_sheen;
-use crate::scene::path_text::path_of_text;
-use crate::scene::texture::TextureTarget;
+use super::{FileError, Loaded, file, own, replace::save_atomically};
+use crate::{
+    document::{
+        MaterialSettings, PARAMETERS, ParameterError, TextureError,
+        material::FILM_THICKNESS_MAX,
+        parameter::{nearest, nearest_key},
+        texture_from_json, texture_to_json,
+    },
+    import::kept_keys,
+    optics::layer::fuzz::fuzz_of_sheen,
+    scene::{path_text::path_of_text, texture::TextureTarget},
+};
 
 /// The version of the format.
 pub const VERSION: u64 = 1;

@@ -2,19 +2,15 @@
 //! has its default; what this version does not know is kept and written back. Files inside the project's folder are
 //! named relative to it, so that the folder can be moved.
 
-use std::cell::RefCell;
-use std::path::{Path, PathBuf};
+use std::{cell::RefCell, path::Path, path::PathBuf};
 
 use serde_json::{Map, Value as Json, json};
 
-use super::error::SIZE_MAX;
-use super::replace::save_atomically;
-use super::{FileError, Loaded, file};
-use super::{own, preset};
-use crate::document::{Document, MaterialSettings, ProfileFile};
-use crate::scene::ModelSource;
-use crate::scene::environment::EnvironmentSource;
-use crate::scene::texture::{TextureTarget, UserTexture};
+use super::{FileError, Loaded, error::SIZE_MAX, file, own, preset, replace::save_atomically};
+use crate::{
+    document::{Document, MaterialSettings, ProfileFile},
+    scene::{ModelSource, environment::EnvironmentSource, texture::TextureTarget, texture::UserTexture},
+};
 
 /// The version of the format.
 pub const VERSION: u64 = 1;

@@ -5,15 +5,11 @@
 //! project files with one more key, so that they can be opened by hand, too. A window that panicked has written a report
 //! beside its file; reports stay when the saved document goes, the latest few of them.
 
-use std::fs::{self, File, OpenOptions};
-use std::io;
-use std::path::{Path, PathBuf};
-use std::time::{SystemTime, UNIX_EPOCH};
+use std::{fs, fs::File, fs::OpenOptions, io, path::Path, path::PathBuf, time::SystemTime, time::UNIX_EPOCH};
 
 use serde_json::{Value as Json, json};
 
-use super::FileError;
-use super::project;
+use super::{FileError, project};
 use crate::document::Document;
 
 /// The key of what is kept beside the document.

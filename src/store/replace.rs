@@ -3,9 +3,7 @@
 //! The new contents grow in a hidden file beside it, which its writer keeps locked. What a killed program has left there is
 //! locked by nobody, and [`remove_leftovers`] takes it away.
 
-use std::fs::{self, File, OpenOptions};
-use std::io::{self, BufWriter, Write};
-use std::path::{Path, PathBuf};
+use std::{fs, fs::File, fs::OpenOptions, io, io::BufWriter, io::Write, path::Path, path::PathBuf};
 
 use super::FileError;
 

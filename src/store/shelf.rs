@@ -1,13 +1,12 @@
 //! What lies in folders that the user keeps materials and environments in: any format that is opened, a few folders deep.
 
-use std::collections::HashMap;
-use std::fs;
-use std::path::{Path, PathBuf};
-use std::time::SystemTime;
+use std::{collections::HashMap, fs, path::Path, path::PathBuf, time::SystemTime};
 
-use super::exchange::{self, ExchangeError, ReadOptions, holds_materials};
-use super::file_kind::{FileKind, MATERIAL_KINDS};
-use super::preset::load_material;
+use super::{
+    exchange::{self, ExchangeError, ReadOptions, holds_materials},
+    file_kind::{FileKind, MATERIAL_KINDS},
+    preset::load_material,
+};
 use crate::document::MaterialSettings;
 
 /// Folders below one that is watched which are looked into.

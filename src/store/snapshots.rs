@@ -1,18 +1,17 @@
 //! Pinned states: a folder of thumbnails that carry their documents.
 
-use std::fs;
-use std::io::Cursor;
-use std::path::{Path, PathBuf};
+use std::{fs, io::Cursor, path::Path, path::PathBuf};
 
 use image::RgbaImage;
 
-use super::FileError;
-use super::library::{free_path, moved, paths_in};
-use super::picture::{parse_picture_document, png_bytes};
-use super::project::document_text;
-use super::replace::save_atomically;
-use crate::document::Document;
-use crate::import::endings::has_ending;
+use super::{
+    FileError,
+    library::{free_path, moved, paths_in},
+    picture::{parse_picture_document, png_bytes},
+    project::document_text,
+    replace::save_atomically,
+};
+use crate::{document::Document, import::endings::has_ending};
 
 /// Longest side of a pinned image, pixels.
 pub const SIDE_MAX: u32 = 256;

@@ -2,9 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::FileError;
-use super::mp4::{self, Mp4};
-use super::replace::save_atomically;
+use super::{FileError, mp4, mp4::Mp4, replace::save_atomically};
 use crate::import::endings::ending;
 
 /// Frames a second that a video may have.

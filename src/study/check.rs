@@ -5,21 +5,23 @@ use std::time::Duration;
 
 use serde::Serialize;
 
-use crate::analysis::chi_square::{PolarGrid, sidak_level, test_samples};
-use crate::document::{AreaLight, Background, CustomCurve, Document, Strategy};
-use crate::job::film::Film;
-use crate::job::scatter::{ScatterCloud, ScatterRequest};
-use crate::optics::curve::Curve;
-use crate::optics::frame::frame_from_normal;
-use crate::optics::lobe::model::LobeModel;
-use crate::optics::lobe::{Facets, Horizon, Lobe, LobeSample, lobe_evaluate, lobe_sample};
-use crate::optics::random::{Sequence, random_pair, random_state};
-use crate::optics::vector::Vec3;
-use crate::parallel;
-use crate::render::{EngineChoice, Sampler, Session, SessionError};
-use crate::scene::ModelSource;
-use crate::scene::environment::EnvironmentSource;
-use crate::study::small_document;
+use crate::{
+    analysis::chi_square::{PolarGrid, sidak_level, test_samples},
+    document::{AreaLight, Background, CustomCurve, Document, Strategy},
+    job::film::Film,
+    job::scatter::{ScatterCloud, ScatterRequest},
+    optics::{
+        curve::Curve,
+        frame::frame_from_normal,
+        lobe::{Facets, Horizon, Lobe, LobeSample, lobe_evaluate, lobe_sample, model::LobeModel},
+        random::{Sequence, random_pair, random_state},
+        vector::Vec3,
+    },
+    parallel,
+    render::{EngineChoice, Sampler, Session, SessionError},
+    scene::{ModelSource, environment::EnvironmentSource},
+    study::small_document,
+};
 
 /// Probability that a run fails by chance although everything is right, for each group of tests.
 const LEVEL: f64 = 1e-3;

@@ -4,11 +4,12 @@ use std::time::Duration;
 
 use serde::Serialize;
 
-use super::references::{Effort, reference};
-use super::{MachineInfo, Steps, StudyError, Watch, warmed};
-use crate::analysis::halves::Distance;
-use crate::document::Document;
-use crate::render::{EngineChoice, Session, StepDenoiser, StopReason};
+use super::{MachineInfo, Steps, StudyError, Watch, references::Effort, references::reference, warmed};
+use crate::{
+    analysis::halves::Distance,
+    document::Document,
+    render::{EngineChoice, Session, StepDenoiser, StopReason},
+};
 
 /// Precision of the reference relative to the render, if time permits.
 const REFERENCE_GAIN: f64 = 4.0;

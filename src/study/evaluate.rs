@@ -4,15 +4,19 @@
 //! sees the surface from within.
 
 use super::probe::Prober;
-use crate::compile::compile;
-use crate::cpu::probe as cpu;
-use crate::document::MaterialSettings;
-use crate::gpu::GpuError;
-use crate::job::probe::{DrawAnswer, DrawQuestion, MaterialQuestion, MaterialView, ProbeScene};
-use crate::optics::material::Material;
-use crate::optics::random::{Sequence, random_pair, random_state};
-use crate::optics::vector::{Vec3, vec3};
-use crate::render::{EngineChoice, Precision};
+use crate::{
+    compile::compile,
+    cpu::probe as cpu,
+    document::MaterialSettings,
+    gpu::GpuError,
+    job::probe::{DrawAnswer, DrawQuestion, MaterialQuestion, MaterialView, ProbeScene},
+    optics::{
+        material::Material,
+        random::{Sequence, random_pair, random_state},
+        vector::{Vec3, vec3},
+    },
+    render::{EngineChoice, Precision},
+};
 
 /// Independent randomisations of the Sobol sequence, whose spread gives the standard errors of albedos.
 pub const BATCHES: u32 = 16;

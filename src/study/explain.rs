@@ -4,14 +4,16 @@
 
 use serde::Serialize;
 
-use crate::compile::slot_materials;
-use crate::cpu::integrator::is_sound;
-use crate::cpu::oracle::PathTracer;
-use crate::cpu::recorder::{Event, LightSource};
-use crate::document::{Document, Strategy};
-use crate::job::Job;
-use crate::optics::random::Sequence;
-use crate::scene::{Geometry, Model};
+use crate::{
+    compile::slot_materials,
+    cpu::{integrator::is_sound, oracle::PathTracer, recorder::Event, recorder::LightSource},
+    document::Document,
+    document::Strategy,
+    job::Job,
+    optics::random::Sequence,
+    scene::Geometry,
+    scene::Model,
+};
 
 mod words;
 

@@ -8,18 +8,19 @@ use std::time::Duration;
 use serde::Serialize;
 
 use super::{MachineInfo, Steps, StudyError, Watch, median, quantile, warmed, without_target};
-use crate::analysis::halves::{Distance, Halves};
-use crate::analysis::noise::noise;
-use crate::document::effect::{Effect, Switch};
-use crate::document::{Document, PixelFilter, Strategy};
-use crate::job::effect::EffectId;
-use crate::job::plan::Plan;
-use crate::optics::fresnel::Fresnel;
-use crate::optics::lobe::Lobe;
-use crate::optics::random::Sequence;
-use crate::plot::short;
-use crate::render::{EngineChoice, Session, StepDenoiser};
-use crate::study::technique::{Technique, converged};
+use crate::{
+    analysis::halves::{Distance, Halves},
+    analysis::noise::noise,
+    document::{
+        Document, PixelFilter, Strategy,
+        effect::{Effect, Switch},
+    },
+    job::{effect::EffectId, plan::Plan},
+    optics::{fresnel::Fresnel, lobe::Lobe, random::Sequence},
+    plot::short,
+    render::{EngineChoice, Session, StepDenoiser},
+    study::technique::{Technique, converged},
+};
 
 /// Minimum samples per pixel of each render by default: two in either half.
 const SAMPLES_MIN: f64 = 4.0;

@@ -14,18 +14,17 @@ pub mod race;
 mod references;
 pub mod technique;
 
-use std::io;
-use std::time::Duration;
+use std::{io, time::Duration};
 
 use serde::Serialize;
 
-use crate::document::{Document, PixelFilter};
-use crate::optics::random::Sequence;
-use crate::render::output::OutputError;
-use crate::render::{EngineInfo, Session, SessionError};
-use crate::scene::ModelSource;
-use crate::scene::environment::EnvironmentSource;
-use crate::store::FileError;
+use crate::{
+    document::{Document, PixelFilter},
+    optics::random::Sequence,
+    render::{EngineInfo, Session, SessionError, output::OutputError},
+    scene::{ModelSource, environment::EnvironmentSource},
+    store::FileError,
+};
 
 pub use convergence::{ConvergencePoint, ConvergenceReport, DenoisedPoint, convergence};
 

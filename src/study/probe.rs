@@ -2,15 +2,16 @@
 
 use bytemuck::Pod;
 
-use crate::cpu::probe as cpu;
-use crate::gpu::GpuError;
-use crate::gpu::probe::Probe;
-use crate::job::probe::{
-    DrawAnswer, DrawQuestion, FresnelQuestion, LobeAnswer, LobeQuestion, MaterialQuestion, NO_HIT, ProbeScene,
-    RandomQuestion, RayAnswer, RayQuestion,
+use crate::{
+    cpu::probe as cpu,
+    gpu::{GpuError, probe::Probe},
+    job::probe::{
+        DrawAnswer, DrawQuestion, FresnelQuestion, LobeAnswer, LobeQuestion, MaterialQuestion, NO_HIT, ProbeScene,
+        RandomQuestion, RayAnswer, RayQuestion,
+    },
+    optics::vector::Vec3,
+    render::{EngineChoice, device_for_functions},
 };
-use crate::optics::vector::Vec3;
-use crate::render::{EngineChoice, device_for_functions};
 
 /// Answers with the functions that the chosen engine renders with.
 pub enum Prober {

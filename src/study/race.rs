@@ -4,19 +4,22 @@
 //! engine's own clock counts. Two errors are distinguished. *Noise* is the distance of an image from the technique's own
 //! limit; it falls with time. *Bias* is the distance of that limit from the most accurate setting's; it stays.
 
-use std::sync::Arc;
-use std::time::Duration;
+use std::{sync::Arc, time::Duration};
 
 use serde::Serialize;
 
-use super::references::{Effort, Reference, reference};
-use super::{MachineInfo, Steps, StudyError, Watch, warmed, without_target};
-use crate::analysis::halves::Distance;
-use crate::document::Document;
-use crate::job::film::Image;
-use crate::render::denoise::Denoised;
-use crate::render::{Assets, EngineChoice, Session, StepDenoiser};
-use crate::study::technique::{Technique, converged, most_accurate};
+use super::{
+    MachineInfo, Steps, StudyError, Watch,
+    references::{Effort, Reference, reference},
+    warmed, without_target,
+};
+use crate::{
+    analysis::halves::Distance,
+    document::Document,
+    job::film::Image,
+    render::{Assets, EngineChoice, Session, StepDenoiser, denoise::Denoised},
+    study::technique::{Technique, converged, most_accurate},
+};
 
 /// Precision of references relative to the target noise, if time permits.
 const REFERENCE_GAIN: f64 = 8.0;

@@ -3,10 +3,7 @@
 use std::time::Duration;
 
 use super::{StudyError, UNLIMITED};
-use crate::analysis::halves::Halves;
-use crate::document::Document;
-use crate::render::Session;
-use crate::study::technique::converged;
+use crate::{analysis::halves::Halves, document::Document, render::Session, study::technique::converged};
 
 /// Changes the random numbers of a reference: no technique's own are these.
 const SEED: u32 = 0x5eed_0f0f;

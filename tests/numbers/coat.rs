@@ -1,12 +1,16 @@
 //! The normal on which fuzz lies.
 
-use glossmith::compile::compile;
-use glossmith::document::{MaterialSettings, assign};
-use glossmith::optics::frame::frame_from_normal;
-use glossmith::optics::layer::{Layer, material_layers};
-use glossmith::optics::material::{Material, Surface};
-use glossmith::optics::numeric::normalize_or;
-use glossmith::optics::vector::vec3;
+use glossmith::{
+    compile::compile,
+    document::{MaterialSettings, assign},
+    optics::{
+        frame::frame_from_normal,
+        layer::{Layer, material_layers},
+        material::{Material, Surface},
+        numeric::normalize_or,
+        vector::vec3,
+    },
+};
 
 /// Fuzz stands on the coat's normal as far as there is a coat, else on that of the base (OpenPBR 1.1).
 #[test]

@@ -1,16 +1,19 @@
 //! The geometric lobe's density against quadrature, in f64: section 4 of docs/MATHEMATICS.md as it is written there,
 //! apart from the closed forms of `optics::chord`.
 
-use std::f64::consts::PI;
-use std::sync::LazyLock;
+use std::{f64::consts::PI, sync::LazyLock};
 
-use glossmith::analysis::quadrature::{gauss_legendre, integrate};
-use glossmith::document::CustomCurve;
-use glossmith::optics::curve::{CUSTOM_INTERVALS, Curve, curve_distance_max, curve_h};
-use glossmith::optics::frame::Frame;
-use glossmith::optics::lobe::{Horizon, Lobe, LobeShape, lobe_evaluate, lobe_sample, stretch_from_anisotropy};
-use glossmith::optics::random::{Sequence, random_pair, random_state};
-use glossmith::optics::vector::{Vec3, vec3};
+use glossmith::{
+    analysis::quadrature::{gauss_legendre, integrate},
+    document::CustomCurve,
+    optics::{
+        curve::{CUSTOM_INTERVALS, Curve, curve_distance_max, curve_h},
+        frame::Frame,
+        lobe::{Horizon, Lobe, LobeShape, lobe_evaluate, lobe_sample, stretch_from_anisotropy},
+        random::{Sequence, random_pair, random_state},
+        vector::{Vec3, vec3},
+    },
+};
 use rayon::prelude::*;
 
 use crate::lobe_cases::{ANGLES_DEG, Case, ROUGHNESS, custom};

@@ -2,13 +2,15 @@
 
 use std::collections::HashSet;
 
-use glossmith::optics::curve::Curve;
-use glossmith::optics::fresnel::{
-    METALS, fresnel_conductor, fresnel_dielectric, fresnel_f0, fresnel_metal, fresnel_schlick, fresnel_transmitted,
+use glossmith::optics::{
+    curve::Curve,
+    fresnel::{
+        METALS, fresnel_conductor, fresnel_dielectric, fresnel_f0, fresnel_metal, fresnel_schlick, fresnel_transmitted,
+    },
+    lobe::{Horizon, Lobe, LobeShape, MIRROR_WIDTH, is_mirror, lobe_sample},
+    random::{Sequence, random_pair, random_pair_bits, random_state},
+    vector::{Vec3, vec3},
 };
-use glossmith::optics::lobe::{Horizon, Lobe, LobeShape, MIRROR_WIDTH, is_mirror, lobe_sample};
-use glossmith::optics::random::{Sequence, random_pair, random_pair_bits, random_state};
-use glossmith::optics::vector::{Vec3, vec3};
 
 use crate::lobe_cases::Case;
 

@@ -2,13 +2,13 @@
 //! with, and the weights of samples. That samples follow it: `material_samples.rs`.
 
 use crate::material_samples::compiled;
-use glossmith::optics::frame::frame_from_normal;
-use glossmith::optics::layer::{
-    Layers, MaterialNumbers, MaterialSample, material_evaluate, material_layers, material_sample,
+use glossmith::optics::{
+    frame::frame_from_normal,
+    layer::{Layers, MaterialNumbers, MaterialSample, material_evaluate, material_layers, material_sample},
+    material::{Material, Surface},
+    random::{Sequence, random_pair, random_state},
+    vector::{Vec3, vec3},
 };
-use glossmith::optics::material::{Material, Surface};
-use glossmith::optics::random::{Sequence, random_pair, random_state};
-use glossmith::optics::vector::{Vec3, vec3};
 
 /// Roughnesses, and indices of refraction, on whose inside the critical angle is met: 41.8 and 25.6 degrees.
 const CASES: [&str; 5] = [

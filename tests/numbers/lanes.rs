@@ -1,8 +1,7 @@
 //! Functions in lanes against the same functions alone, on each of this processor's instruction sets: the same to the last bit.
 //! So what is proven of f32, and of f64 in other tests, holds of what the processor renders with.
 
-use glossmith::optics::lanes::{InLanes, in_lanes};
-use glossmith::optics::real::Real;
+use glossmith::optics::{lanes::InLanes, lanes::in_lanes, real::Real};
 
 use crate::support::{Random, sets};
 

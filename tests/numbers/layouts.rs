@@ -2,13 +2,14 @@
 
 use std::mem::offset_of;
 
-use glossmith::gpu::layout::{Globals, PixelColors, PixelStatistics, Tile, Triangle};
-use glossmith::gpu::scatter::Scatter;
-use glossmith::job::guides::GuideSums;
-use glossmith::optics::material::{FIELDS, Field, Material};
-use glossmith::optics::target::TextureTarget;
-use glossmith::scene::Vertex;
-use glossmith::scene::camera::Camera;
+use glossmith::{
+    gpu::layout::{Globals, PixelColors, PixelStatistics, Tile, Triangle},
+    gpu::scatter::Scatter,
+    job::guides::GuideSums,
+    optics::material::{FIELDS, Field, Material},
+    optics::target::TextureTarget,
+    scene::{Vertex, camera::Camera},
+};
 
 use super::shaders::modules;
 

@@ -1,9 +1,11 @@
 //! The grid of lobes, roughnesses and view angles that the statistical tests loop over.
 
-use glossmith::optics::curve::{CUSTOM_INTERVALS, Curve, Integral, custom_table};
-use glossmith::optics::frame::{Frame, frame_from_normal};
-use glossmith::optics::lobe::{Horizon, Lobe, LobeShape, lobe_middle};
-use glossmith::optics::vector::{Vec3, vec3};
+use glossmith::optics::{
+    curve::{CUSTOM_INTERVALS, Curve, Integral, custom_table},
+    frame::{Frame, frame_from_normal},
+    lobe::{Horizon, Lobe, LobeShape, lobe_middle},
+    vector::{Vec3, vec3},
+};
 
 /// Mirror-like, glossy, rough, nearly Lambertian, Lambertian.
 pub const ROUGHNESS: &[f64] = if cfg!(feature = "thorough") {

@@ -1,16 +1,20 @@
 //! Samples of whole materials against their density.
 
-use glossmith::analysis::chi_square::{PolarGrid, sidak_level, test_samples};
-use glossmith::compile::compile;
-use glossmith::document::{MaterialSettings, assign};
-use glossmith::job::probe::{DrawQuestion, MaterialView, ProbeScene};
-use glossmith::optics::frame::frame_from_normal;
-use glossmith::optics::layer::{material_density, material_layers};
-use glossmith::optics::material::{Material, Surface};
-use glossmith::optics::random::{Sequence, random_pair, random_state};
-use glossmith::optics::vector::{Vec3, vec3};
-use glossmith::render::EngineChoice;
-use glossmith::study::probe::Prober;
+use glossmith::{
+    analysis::chi_square::{PolarGrid, sidak_level, test_samples},
+    compile::compile,
+    document::{MaterialSettings, assign},
+    job::probe::{DrawQuestion, MaterialView, ProbeScene},
+    optics::{
+        frame::frame_from_normal,
+        layer::{material_density, material_layers},
+        material::{Material, Surface},
+        random::{Sequence, random_pair, random_state},
+        vector::{Vec3, vec3},
+    },
+    render::EngineChoice,
+    study::probe::Prober,
+};
 
 /// Samples of a case, of which the other density of its row is seen.
 const SAMPLES: u32 = 20_000;

@@ -1,14 +1,16 @@
 //! Every shader module links and validates by itself, translates to the other graphics
 //! interfaces, and has the constants of its Rust twin.
 
-use glossmith::cpu::integrator;
-use glossmith::document::Document;
-use glossmith::gpu::Traversal;
-use glossmith::gpu::shader::{GENERATED, Linked, link, link_for, module_names};
-use glossmith::job::plan::Plan;
-use glossmith::optics::lobe::{Facets, Lobe};
-use glossmith::render::{EngineChoice, Session};
-use glossmith::scene::camera::{GAUSSIAN_RADIUS, GAUSSIAN_SIGMA};
+use glossmith::{
+    cpu::integrator,
+    document::Document,
+    gpu::Traversal,
+    gpu::shader::{GENERATED, Linked, link, link_for, module_names},
+    job::plan::Plan,
+    optics::lobe::{Facets, Lobe},
+    render::{EngineChoice, Session},
+    scene::camera::{GAUSSIAN_RADIUS, GAUSSIAN_SIGMA},
+};
 #[cfg(feature = "metal")]
 use naga::back::msl;
 use naga::back::{hlsl, spv};

@@ -1,14 +1,20 @@
 //! χ² of every sampler against its density, in f64.
 
 use crate::lobe_cases::{ANGLES_DEG, Case, ROUGHNESS, is_quick, lobes_and_curves, lobes_and_quick_curves};
-use glossmith::analysis::chi_square::{ChiSquare, PolarGrid, sidak_level, test_samples, upper_tail};
-use glossmith::analysis::histogram::{Histogram, angle_density};
-use glossmith::analysis::quadrature::{gauss_legendre, integrate, integrate_hemisphere};
-use glossmith::optics::curve::Curve;
-use glossmith::optics::frame::frame_from_normal;
-use glossmith::optics::lobe::{Facets, Horizon, Lobe, LobeSample, lobe_evaluate, lobe_sample, raw_weight};
-use glossmith::optics::random::{Sequence, random_pair, random_state};
-use glossmith::optics::vector::{Vec3, vec3};
+use glossmith::{
+    analysis::{
+        chi_square::{ChiSquare, PolarGrid, sidak_level, test_samples, upper_tail},
+        histogram::{Histogram, angle_density},
+        quadrature::{gauss_legendre, integrate, integrate_hemisphere},
+    },
+    optics::{
+        curve::Curve,
+        frame::frame_from_normal,
+        lobe::{Facets, Horizon, Lobe, LobeSample, lobe_evaluate, lobe_sample, raw_weight},
+        random::{Sequence, random_pair, random_state},
+        vector::{Vec3, vec3},
+    },
+};
 use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
 

@@ -3,21 +3,37 @@
 
 use std::f64::consts::TAU;
 
-use glossmith::document::{MaterialSettings, assign};
-use glossmith::optics::fresnel::{fresnel_dielectric, fresnel_schlick};
-use glossmith::optics::refraction::refracted;
-use glossmith::optics::vector::{Vec3, vec3};
-use glossmith::render::{EngineChoice, Precision};
-use glossmith::study::evaluate::Evaluator;
+use glossmith::{
+    document::{MaterialSettings, assign},
+    optics::{
+        fresnel::{fresnel_dielectric, fresnel_schlick},
+        refraction::refracted,
+        vector::{Vec3, vec3},
+    },
+    render::{EngineChoice, Precision},
+    study::evaluate::Evaluator,
+};
 
 use super::support::Random;
 
 const IS_THOROUGH: bool = cfg!(feature = "thorough");
 /// Walks of a view, whose share that is reflected so has a standard error of at most 0.002, or 0.001.
 const WALKS: u32 = if IS_THOROUGH { 300_000 } else { 60_000 };
-const ROUGHNESS: &[f64] = if IS_THOROUGH { &[0.2, 0.3, 0.4, 0.6, 0.8, 1.0] } else { &[0.3, 0.6, 1.0] };
-const COSINES: &[f64] = if IS_THOROUGH { &[1.0, 0.7, 0.4, 0.2, 0.1] } else { &[1.0, 0.4, 0.1] };
-const INDICES: &[f64] = if IS_THOROUGH { &[1.3, 1.5, 2.0, 2.5] } else { &[1.3, 2.5] };
+const ROUGHNESS: &[f64] = if IS_THOROUGH {
+    &[0.2, 0.3, 0.4, 0.6, 0.8, 1.0]
+} else {
+    &[0.3, 0.6, 1.0]
+};
+const COSINES: &[f64] = if IS_THOROUGH {
+    &[1.0, 0.7, 0.4, 0.2, 0.1]
+} else {
+    &[1.0, 0.4, 0.1]
+};
+const INDICES: &[f64] = if IS_THOROUGH {
+    &[1.3, 1.5, 2.0, 2.5]
+} else {
+    &[1.3, 2.5]
+};
 
 fn random(rng: &mut Random) -> f64 {
     f64::from(rng.unit())
@@ -131,12 +147,19 @@ fn metals_reflect_what_walks_do() {
         // White, gold and copper.
         for f0 in [[1.0, 1.0, 1.0], [1.0, 0.77, 0.34], [0.95, 0.64, 0.54]] {
             let color = format!("base.color={},{},{}", f0[0], f0[1], f0[2]);
-            let all = reflected(&["base.metalness=1", "specular.fresnel=schlick", &color], roughness, 1.0);
+            let all = reflected(
+                &["base.metalness=1", "specular.fresnel=schlick", &color],
+                roughness,
+                1.0,
+            );
             for (found, &cosine) in all.into_iter().zip(COSINES) {
                 let truth = of_metal(roughness * roughness, cosine, Vec3::from_f64(f0), &mut rng).to_f64();
                 for (found, truth) in found.into_iter().zip(truth) {
                     let off = (found - truth).abs();
-                    assert!(off < 0.02, "{f0:?}, roughness {roughness} at {cosine}: {found} for {truth}");
+                    assert!(
+                        off < 0.02,
+                        "{f0:?}, roughness {roughness} at {cosine}: {found} for {truth}"
+                    );
                 }
             }
         }
@@ -148,7 +171,11 @@ fn metals_reflect_what_walks_do() {
 #[test]
 fn glass_reflects_what_walks_do() {
     let mut rng = Random::new(5);
-    let glass = ["base.metalness=0", "transmission.weight=1", "specular.fresnel=dielectric"];
+    let glass = [
+        "base.metalness=0",
+        "transmission.weight=1",
+        "specular.fresnel=dielectric",
+    ];
     for &roughness in ROUGHNESS {
         for &ior in INDICES {
             for side in [1.0, -1.0] {
@@ -161,7 +188,11 @@ fn glass_reflects_what_walks_do() {
                     let truth = of_glass(roughness * roughness, cosine, ior.powf(side), &mut rng);
                     let off = (found - truth).abs();
                     let limit = if side > 0.0 { 0.02 } else { 0.028 };
-                    assert!(off < limit, "{ior}, roughness {roughness} at {}: {found} for {truth}", side * cosine);
+                    assert!(
+                        off < limit,
+                        "{ior}, roughness {roughness} at {}: {found} for {truth}",
+                        side * cosine
+                    );
                 }
             }
         }

@@ -5,12 +5,12 @@
 //! sequence; of bodies seen whole the spread of several pictures does. A case may be off by four of its own standard errors
 //! and [`ROUNDING`], together at most [`BOUND`].
 
-use std::sync::LazyLock;
-use std::time::{Duration, Instant};
+use std::{sync::LazyLock, time::Duration, time::Instant};
 
-use glossmith::document::effect::EffectSwitches;
-use glossmith::document::{Document, Strategy};
-use glossmith::render::{EngineChoice, Session};
+use glossmith::{
+    document::{Document, Strategy, effect::EffectSwitches},
+    render::{EngineChoice, Session},
+};
 
 use crate::analytic_scenes::{Case, cases};
 

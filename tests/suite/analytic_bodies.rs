@@ -1,8 +1,7 @@
 //! Bodies whose picture is known in closed form, for the table of scenes: glass that absorbs, balls, discs, edges.
 
 use glam::DVec3;
-use glossmith::optics::fresnel::fresnel_dielectric;
-use glossmith::scene::mesh::Mesh;
+use glossmith::{optics::fresnel::fresnel_dielectric, scene::mesh::Mesh};
 
 use crate::analytic_scenes::{CLEAR, Case, MIS, add_box};
 

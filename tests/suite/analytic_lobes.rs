@@ -1,10 +1,14 @@
 //! Lobes in the furnace: their albedos by quadrature, and white metals whose facets scatter until all light is reflected.
 
-use glossmith::analysis::quadrature::integrate_hemisphere;
-use glossmith::optics::curve::Curve;
-use glossmith::optics::frame::frame_from_normal;
-use glossmith::optics::lobe::{Horizon, Lobe, LobeShape, lobe_evaluate};
-use glossmith::optics::vector::vec3;
+use glossmith::{
+    analysis::quadrature::integrate_hemisphere,
+    optics::{
+        curve::Curve,
+        frame::frame_from_normal,
+        lobe::{Horizon, Lobe, LobeShape, lobe_evaluate},
+        vector::vec3,
+    },
+};
 
 use crate::analytic_scenes::{Case, MIS};
 

@@ -4,9 +4,7 @@
 use std::f64::consts::TAU;
 
 use glam::{DVec3, Vec2, Vec4};
-use glossmith::document::{Document, MaterialSettings};
-use glossmith::scene::mesh::Mesh;
-use glossmith::scene::shapes::sphere;
+use glossmith::{document::Document, document::MaterialSettings, scene::mesh::Mesh, scene::shapes::sphere};
 
 use crate::analytic_scenes::{ALL, BY_LIGHT, CLEAR, Case, MIS, add_box, add_rectangle};
 use crate::renders::{material, set};

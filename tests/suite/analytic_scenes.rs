@@ -4,20 +4,26 @@
 use std::f64::consts::PI;
 
 use glam::{DVec3, Vec2};
-use glossmith::analysis::quadrature::{gauss_legendre, integrate};
-use glossmith::document::{AreaLight, AreaLightShape, Background, Document, MaterialSettings, Strategy};
-use glossmith::optics::random::Sequence;
-use glossmith::render::Assets;
-use glossmith::scene::environment::{Environment, EnvironmentSource};
-use glossmith::scene::mesh::Mesh;
-use glossmith::scene::texture::TextureTarget;
-use glossmith::scene::{Model, ModelSource, Slot, Texture, TextureRef, Wrap};
+use glossmith::{
+    analysis::quadrature::{gauss_legendre, integrate},
+    document::{AreaLight, AreaLightShape, Background, Document, MaterialSettings, Strategy},
+    optics::random::Sequence,
+    render::Assets,
+    scene::{
+        Model, ModelSource, Slot, Texture, TextureRef, Wrap,
+        environment::{Environment, EnvironmentSource},
+        mesh::Mesh,
+        texture::TextureTarget,
+    },
+};
 
-use crate::analytic_bodies::cubes;
-use crate::analytic_lobes::lobes;
-use crate::analytic_media::media;
-use crate::lights::{corners, irradiance};
-use crate::renders::{document, set};
+use crate::{
+    analytic_bodies::cubes,
+    analytic_lobes::lobes,
+    analytic_media::media,
+    lights::{corners, irradiance},
+    renders::{document, set},
+};
 
 /// A row of the table.
 pub struct Case {

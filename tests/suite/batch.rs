@@ -3,9 +3,7 @@
 use crate::cli_support::{Run, Workplace};
 use glossmith::store::PRESETS;
 use serde_json::Value as Json;
-use std::collections::HashMap;
-use std::io::{BufRead as _, BufReader};
-use std::process::{Command, Stdio};
+use std::{collections::HashMap, io::BufRead as _, io::BufReader, process::Command, process::Stdio};
 
 const SMALL: &str = "\n[common]\nsize = \"16x16\"\nsamples = 4\nmodel = \"sphere\"\n";
 

@@ -1,7 +1,6 @@
 //! The benchmark: a quick run, its file against the schema, and two results side by side.
 
-use glossmith::study::benchmark::compare::compare;
-use glossmith::study::benchmark::report::{EngineReport, Report};
+use glossmith::study::benchmark::{compare::compare, report::EngineReport, report::Report};
 use serde_json::Value;
 
 use super::cli_support::Workplace;

@@ -1,9 +1,10 @@
 //! Brushed surfaces: the way of an anisotropy's rotation, as a file means it, from either side.
 
-use glossmith::document::of_model::materials_of;
-use glossmith::document::{AreaLight, Document, ImportLobe};
-use glossmith::render::EngineChoice;
-use glossmith::scene::ModelSource;
+use glossmith::{
+    document::{AreaLight, Document, ImportLobe, of_model::materials_of},
+    render::EngineChoice,
+    scene::ModelSource,
+};
 use serde_json::json;
 
 use super::gltf_builder::{Buffer, Folder, SQUARE};

@@ -1,11 +1,11 @@
 //! What the camera sees: parallel rays, and lights that are hidden from it, on both engines.
 
-use glossmith::document::{AreaLight, AreaLightShape, Background, Document};
-use glossmith::job::film::{Film, luminance};
-use glossmith::render::EngineChoice;
-use glossmith::scene::ModelSource;
-use glossmith::scene::camera::Projection;
-use glossmith::scene::environment::EnvironmentSource;
+use glossmith::{
+    document::{AreaLight, AreaLightShape, Background, Document},
+    job::film::{Film, luminance},
+    render::EngineChoice,
+    scene::{ModelSource, camera::Projection, environment::EnvironmentSource},
+};
 
 use crate::renders::{document, render};
 

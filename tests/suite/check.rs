@@ -2,11 +2,13 @@
 
 use std::sync::atomic::AtomicBool;
 
-use glossmith::cpu;
-use glossmith::job::scatter::ScatterRequest;
-use glossmith::optics::lobe::Lobe;
-use glossmith::render::EngineChoice;
-use glossmith::study::check::{Check, CheckOptions, chi_square, run, sample_cases};
+use glossmith::{
+    cpu,
+    job::scatter::ScatterRequest,
+    optics::lobe::Lobe,
+    render::EngineChoice,
+    study::check::{Check, CheckOptions, chi_square, run, sample_cases},
+};
 
 /// The quick grid holds every lobe and curve as a reflecting, a refracting and, where it can be, a stretched one.
 #[test]

@@ -2,8 +2,7 @@
 
 use std::collections::HashMap;
 
-use glossmith::store::opened::{self, Opened};
-use glossmith::store::picture::load_picture_document;
+use glossmith::store::{opened, opened::Opened, picture::load_picture_document};
 use serde_json::Value;
 
 use crate::cli_support::{Workplace, channels};

@@ -1,8 +1,10 @@
 //! What was saved is rendered by the command line: projects, pictures with their document inside, with options on top.
 
-use glossmith::document::{Background, Document, MaterialSettings, SETTINGS};
-use glossmith::scene::ModelSource;
-use glossmith::store::{save_document, save_material};
+use glossmith::{
+    document::{Background, Document, MaterialSettings, SETTINGS},
+    scene::ModelSource,
+    store::{save_document, save_material},
+};
 
 use crate::cli_support::{Picture, Workplace};
 

@@ -1,8 +1,6 @@
 //! The program run as a user runs it: in a folder of its own, by its arguments, judged by its files and messages.
 
-use std::collections::HashMap;
-use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::{collections::HashMap, path::Path, path::PathBuf, process::Command};
 
 use exr::prelude::{
     Encoding, Image, Layer, LayerAttributes, ReadChannels as _, ReadLayers as _, SpecificChannels, Vec2, WritableImage,

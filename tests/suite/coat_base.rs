@@ -3,15 +3,15 @@
 
 use std::path::Path;
 
-use glossmith::compile::compile;
-use glossmith::document::{Background, CoatLobe, MaterialSettings};
-use glossmith::optics::fresnel::fresnel_dielectric;
-use glossmith::optics::layer::coat::inner_reflection;
-use glossmith::render::{EngineChoice, Precision};
-use glossmith::scene::ModelSource;
-use glossmith::scene::environment::EnvironmentSource;
-use glossmith::store::preset::parse_material;
-use glossmith::study::evaluate::Evaluator;
+use glossmith::{
+    compile::compile,
+    document::{Background, CoatLobe, MaterialSettings},
+    optics::{fresnel::fresnel_dielectric, layer::coat::inner_reflection},
+    render::{EngineChoice, Precision},
+    scene::{ModelSource, environment::EnvironmentSource},
+    store::preset::parse_material,
+    study::evaluate::Evaluator,
+};
 
 use super::renders::{document, material, render};
 

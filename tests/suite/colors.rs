@@ -1,11 +1,15 @@
 //! Colours: of black bodies, between spaces, graded, and of metals by two colours.
 
-use glossmith::document::{Conductor, MaterialSettings};
-use glossmith::optics::blackbody::{blackbody_color, temperature_of_color};
-use glossmith::optics::fresnel::{Fresnel, fresnel_conductor, fresnel_metal};
-use glossmith::optics::primaries::{Chromaticities, NoSpace, REC709, transformed};
-use glossmith::optics::tone::Grade;
-use glossmith::optics::vector::Vec3;
+use glossmith::{
+    document::{Conductor, MaterialSettings},
+    optics::{
+        blackbody::{blackbody_color, temperature_of_color},
+        fresnel::{Fresnel, fresnel_conductor, fresnel_metal},
+        primaries::{Chromaticities, NoSpace, REC709, transformed},
+        tone::Grade,
+        vector::Vec3,
+    },
+};
 
 /// Middle grey, which contrast keeps.
 const MIDDLE_GREY: f32 = 0.18;

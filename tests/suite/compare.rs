@@ -1,18 +1,23 @@
 //! Comparing, pinning, pictures that bring their document back: in the editor with the real renderer.
 
-use super::ui::{Editor, editor, editor_of, options, request, see, settle, wait};
-use super::ui_hands::{Hands as _, press};
-use super::worker::small_document;
-use egui::accesskit::Role;
-use egui::{Key, Modifiers, Vec2};
+use super::{
+    ui::{Editor, editor, editor_of, options, request, see, settle, wait},
+    ui_hands::{Hands as _, press},
+    worker::small_document,
+};
+use egui::{Key, Modifiers, Vec2, accesskit::Role};
 use egui_kittest::kittest::Queryable as _;
-use glossmith::app::Options;
-use glossmith::app::actions::{Action, Command};
-use glossmith::app::compare::Rival;
-use glossmith::app::layout::Pane;
-use glossmith::document::Document;
-use glossmith::render::worker::{Activity, Picture};
-use glossmith::store::PRESETS;
+use glossmith::{
+    app::{
+        Options,
+        actions::{Action, Command},
+        compare::Rival,
+        layout::Pane,
+    },
+    document::Document,
+    render::worker::{Activity, Picture},
+    store::PRESETS,
+};
 
 /// Waits until B, too, is finished and both have been compared.
 fn settle_both(harness: &mut Editor, what: &str, is_b: impl Fn(&Document) -> bool) {

@@ -1,17 +1,16 @@
 //! A panic leaves the unsaved document and a report, and the next start says so.
 
-use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
-use std::time::Duration;
+use std::{path::Path, path::PathBuf, process::Command, process::Stdio, time::Duration};
 
 use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable as _;
-use glossmith::app::actions::Command as Choice;
-use glossmith::app::{Options, report_panics};
+use glossmith::app::{Options, actions::Command as Choice, report_panics};
 
-use super::nothing_lost::{edit, keeping_editor};
-use super::ui::{Editor, editor_of, options, see, wait};
-use super::ui_hands::Hands as _;
+use super::{
+    nothing_lost::{edit, keeping_editor},
+    ui::{Editor, editor_of, options, see, wait},
+    ui_hands::Hands as _,
+};
 
 /// The data folder of the child.
 const DATA: &str = "GLOSSMITH_TEST_DATA";

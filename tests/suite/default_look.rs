@@ -2,15 +2,17 @@
 
 use std::time::Duration;
 
-use glossmith::document::{Background, Document, ViewSettings};
-use glossmith::optics::primaries::{REC709, transformed};
-use glossmith::optics::tone::{ToneCurve, linear_from_srgb};
-use glossmith::optics::vector::Vec3;
-use glossmith::render::display::display;
-use glossmith::render::{EngineChoice, Session};
-use glossmith::scene::ModelSource;
-use glossmith::scene::environment::EnvironmentSource;
-use glossmith::store::material_by_name;
+use glossmith::{
+    document::{Background, Document, ViewSettings},
+    optics::{
+        primaries::{REC709, transformed},
+        tone::{ToneCurve, linear_from_srgb},
+        vector::Vec3,
+    },
+    render::{EngineChoice, Session, display::display},
+    scene::{ModelSource, environment::EnvironmentSource},
+    store::material_by_name,
+};
 
 const SIDE: u32 = 48;
 

@@ -2,17 +2,17 @@
 
 use std::path::Path;
 
-use glossmith::analysis::halves::Halves;
-use glossmith::document::{Denoise, Document};
-use glossmith::job::film::{Extras, Film, Image};
-use glossmith::job::guides::GuideSums;
-use glossmith::render::EngineChoice;
-use glossmith::render::denoise::{Denoised, Denoiser, Noisy};
-use glossmith::scene::ModelSource;
+use glossmith::{
+    analysis::halves::Halves,
+    document::{Denoise, Document},
+    job::film::{Extras, Film, Image},
+    job::guides::GuideSums,
+    render::EngineChoice,
+    render::denoise::{Denoised, Denoiser, Noisy},
+    scene::ModelSource,
+};
 
-use super::cli_support::{Workplace, read_exr};
-use super::renders::{render, set};
-use super::support::Random;
+use super::{cli_support::Workplace, cli_support::read_exr, renders::render, renders::set, support::Random};
 
 fn denoiser() -> Denoiser {
     Denoiser::open().unwrap_or_else(|error| panic!("{error}"))

@@ -1,19 +1,16 @@
 //! What is told of a denoised picture's error where its guides are as noisy as its light: textures, edges; and that nothing
 //! of one half of the samples gets into the other's picture.
 
-use glossmith::analysis::halves::Halves;
-use glossmith::document::{Denoise, Document, assign};
-use glossmith::job::film::{Extras, Film};
-use glossmith::job::guides::GuideSums;
-use glossmith::render::denoise::{Denoiser, Noisy};
-use glossmith::render::{EngineChoice, Session};
-use glossmith::scene::ModelSource;
-use glossmith::scene::environment::EnvironmentSource;
-use glossmith::scene::texture::{TextureTarget, UserTexture};
+use glossmith::{
+    analysis::halves::Halves,
+    document::{Denoise, Document, assign},
+    job::{film::Extras, film::Film, guides::GuideSums},
+    render::{EngineChoice, Session, denoise::Denoiser, denoise::Noisy},
+    scene::{ModelSource, environment::EnvironmentSource, texture::TextureTarget, texture::UserTexture},
+};
 use image::Luma;
 
-use super::gltf_builder::Folder;
-use super::support::Random;
+use super::{gltf_builder::Folder, support::Random};
 
 fn denoiser() -> Denoiser {
     Denoiser::open().unwrap_or_else(|error| panic!("{error}"))

@@ -2,11 +2,15 @@
 
 use std::time::{Duration, Instant};
 
-use glossmith::document::{Document, MaterialSettings};
-use glossmith::gpu::{AdapterKind, GpuAdapter, Moment, Traversal};
-use glossmith::job::film::Image;
-use glossmith::render::worker::{Event, Level, Pace, Worker};
-use glossmith::render::{EngineChoice, EngineKind, MachineOptions, RayQueries, Session, SessionError};
+use glossmith::{
+    document::{Document, MaterialSettings},
+    gpu::{AdapterKind, GpuAdapter, Moment, Traversal},
+    job::film::Image,
+    render::{
+        EngineChoice, EngineKind, MachineOptions, RayQueries, Session, SessionError,
+        worker::{Event, Level, Pace, Worker},
+    },
+};
 
 use super::cli_support::passes_alone;
 use super::worker::{finished, small_document, wait};

@@ -1,12 +1,15 @@
 //! Displays of the render at every step: an image, its maps and its facts are of one film.
 
-use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
-use std::sync::{Arc, Mutex, OnceLock};
+use std::sync::{Arc, Mutex, OnceLock, atomic::AtomicU64, atomic::Ordering::Relaxed};
 
-use glossmith::document::Denoise;
-use glossmith::render::EngineChoice;
-use glossmith::render::shown::Shown;
-use glossmith::render::worker::{Activity, Pace, Picture, Snapshot, Worker};
+use glossmith::{
+    document::Denoise,
+    render::{
+        EngineChoice,
+        shown::Shown,
+        worker::{Activity, Pace, Picture, Snapshot, Worker},
+    },
+};
 
 use super::worker::{small_document, wait};
 

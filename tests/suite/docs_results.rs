@@ -4,8 +4,7 @@ use std::path::PathBuf;
 
 use glossmith::study::benchmark::report::{EngineReport, Report, number};
 
-use super::docs::root;
-use super::docs_tables::table;
+use super::{docs::root, docs_tables::table};
 
 /// A row for each engine of each result in `docs/results`.
 pub fn table_of_results() -> String {

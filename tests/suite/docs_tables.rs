@@ -1,27 +1,33 @@
 //! The tables of the book that are made from the registries hold what the program has, to the letter; `UPDATE_DOCS=1 cargo
 //! test docs` writes them again.
 
-use std::fmt::Write as _;
-use std::path::Path;
+use std::{fmt::Write as _, path::Path};
 
 use clap::{Arg, ArgAction, Command, CommandFactory};
-use glossmith::cli::Arguments;
-use glossmith::document::effect::EFFECTS;
-use glossmith::document::{Kind, PARAMETERS, Parameter, SETTINGS, TEXTURE_PARAMETERS, parameter};
-use glossmith::import::{FBX_PARAMETERS, FileParameter, GLTF_PARAMETERS, Goes, MTL_PARAMETERS};
-use glossmith::optics::curve::Curve;
-use glossmith::optics::fresnel::Fresnel;
-use glossmith::optics::lobe::Lobe;
-use glossmith::optics::tone::{ToneCurve, srgb_from_linear};
-use glossmith::optics::vector::Vec3;
-use glossmith::store::PRESETS;
-use glossmith::store::exchange::{FORMATS, Registered, SURFACES};
-use glossmith::store::file_kind::FileKind;
-use glossmith::store::preset::{command_line_name, source_of_values};
+use glossmith::{
+    cli::Arguments,
+    document::{Kind, PARAMETERS, Parameter, SETTINGS, TEXTURE_PARAMETERS, effect::EFFECTS, parameter},
+    import::{FBX_PARAMETERS, FileParameter, GLTF_PARAMETERS, Goes, MTL_PARAMETERS},
+    optics::{
+        curve::Curve,
+        fresnel::Fresnel,
+        lobe::Lobe,
+        tone::{ToneCurve, srgb_from_linear},
+        vector::Vec3,
+    },
+    store::{
+        PRESETS,
+        exchange::{FORMATS, Registered, SURFACES},
+        file_kind::FileKind,
+        preset::{command_line_name, source_of_values},
+    },
+};
 
-use super::cli_support::Workplace;
-use super::docs::{pages, root, text_of};
-use super::docs_commands::{arguments, commands};
+use super::{
+    cli_support::Workplace,
+    docs::{pages, root, text_of},
+    docs_commands::{arguments, commands},
+};
 
 const BEGIN: &str = "<!-- made from the program: ";
 const END: &str = "<!-- end -->";

@@ -1,15 +1,20 @@
 //! Documents: differences, history, compilation.
 
-use glossmith::compile::compile;
-use glossmith::document::custom_curve::CustomCurve;
-use glossmith::document::history::History;
-use glossmith::document::turntable::{Turn, turned};
-use glossmith::document::{AreaLight, Change, Document, MaterialSettings, PARAMETERS};
-use glossmith::optics::albedo::{ALBEDO_LENGTH, ROUGH_ALBEDO_LENGTH};
-use glossmith::optics::curve::{CUSTOM_LENGTH, Curve, curve_distance};
-use glossmith::optics::lobe::Lobe;
-use glossmith::scene::ModelSource;
-use glossmith::scene::environment::EnvironmentSource;
+use glossmith::{
+    compile::compile,
+    document::{
+        AreaLight, Change, Document, MaterialSettings, PARAMETERS,
+        custom_curve::CustomCurve,
+        history::History,
+        turntable::{Turn, turned},
+    },
+    optics::{
+        albedo::{ALBEDO_LENGTH, ROUGH_ALBEDO_LENGTH},
+        curve::{CUSTOM_LENGTH, Curve, curve_distance},
+        lobe::Lobe,
+    },
+    scene::{ModelSource, environment::EnvironmentSource},
+};
 
 use proptest::prelude::{Just, ProptestConfig, prop, prop_assert, prop_assert_eq, prop_oneof, proptest};
 

@@ -1,11 +1,13 @@
 //! Environments: conventions of the map, look-up, and the sampling density against statistics and quadrature.
 
 use crate::support::Random;
-use glossmith::optics::real::Scalar;
-use glossmith::optics::vector::{Vec3, vec3};
-use glossmith::scene::environment::{
-    Environment, SkyParams, brightened, environment_direction, environment_local_from_world, environment_radiance,
-    environment_sample, environment_uv, environment_world_from_local, sky, studio, sun_direction, sun_irradiance,
+use glossmith::{
+    optics::real::Scalar,
+    optics::vector::{Vec3, vec3},
+    scene::environment::{
+        Environment, SkyParams, brightened, environment_direction, environment_local_from_world, environment_radiance,
+        environment_sample, environment_uv, environment_world_from_local, sky, studio, sun_direction, sun_irradiance,
+    },
 };
 use std::f64::consts::{PI, TAU};
 

@@ -7,10 +7,11 @@ use exr::prelude::{
     AnyChannel, AnyChannels, Compression, Encoding, FlatSamples, Image, ImageAttributes, IntegerBounds, Layer,
     LayerAttributes, LineOrder, SmallVec, SpecificChannels, Vec2, WritableImage, f16,
 };
-use glossmith::import::environment::EnvironmentError;
-use glossmith::import::environment::load;
-use glossmith::optics::vector::vec3;
-use glossmith::scene::environment::{Environment, EnvironmentSource, environment_radiance};
+use glossmith::{
+    import::environment::{EnvironmentError, load},
+    optics::vector::vec3,
+    scene::environment::{Environment, EnvironmentSource, environment_radiance},
+};
 use image::codecs::hdr::HdrEncoder;
 use tempfile::TempDir;
 

@@ -2,14 +2,16 @@
 
 use crate::environment::{assert_near, constant_map, random_map, sun_map, triple};
 use crate::support::Random;
-use glossmith::analysis::chi_square::test_counts;
-use glossmith::import::environment::load;
-use glossmith::optics::vector::{Vec3, vec3};
-use glossmith::scene::environment::{
-    Distribution, EnvironmentSource, SkyParams, environment_density, environment_direction, environment_radiance,
-    environment_sample, environment_uv, sky,
+use glossmith::{
+    analysis::chi_square::test_counts,
+    import::environment::load,
+    optics::vector::{Vec3, vec3},
+    scene::environment::{
+        Distribution, EnvironmentSource, SkyParams, environment_density, environment_direction, environment_radiance,
+        environment_sample, environment_uv, sky,
+    },
+    scene::inversion::{DRAW_BITS, drawn, find, place_in, shares},
 };
-use glossmith::scene::inversion::{DRAW_BITS, drawn, find, place_in, shares};
 use std::f64::consts::{PI, TAU};
 
 #[test]

@@ -3,9 +3,11 @@
 
 use std::path::Path;
 
-use glossmith::import::environment::{load, load_encoded};
-use glossmith::optics::vector::vec3;
-use glossmith::scene::environment::{Environment, EnvironmentEncoding, EnvironmentSource, environment_radiance};
+use glossmith::{
+    import::environment::{load, load_encoded},
+    optics::vector::vec3,
+    scene::environment::{Environment, EnvironmentEncoding, EnvironmentSource, environment_radiance},
+};
 use image::{DynamicImage, ImageBuffer, Rgb};
 use tempfile::TempDir;
 

@@ -3,15 +3,19 @@
 
 use std::f64::consts::TAU;
 
-use glossmith::analysis::adaptive::{Round, next_goals};
-use glossmith::analysis::denoised::{Colors, DenoisedHalves, Errors};
-use glossmith::analysis::difference::{difference, diverging};
-use glossmith::analysis::error::{Estimates, relative_mean_squared_error, z_test};
-use glossmith::analysis::halves::Halves;
-use glossmith::analysis::noise::{noise, relative_errors, tile_errors};
-use glossmith::job::film::{Film, Image};
-use glossmith::job::tiles::TileGrid;
-use glossmith::optics::random::{Sequence, random_pair, random_state};
+use glossmith::{
+    analysis::{
+        adaptive::{Round, next_goals},
+        denoised::{Colors, DenoisedHalves, Errors},
+        difference::{difference, diverging},
+        error::{Estimates, relative_mean_squared_error, z_test},
+        halves::Halves,
+        noise::{noise, relative_errors, tile_errors},
+    },
+    job::film::{Film, Image},
+    job::tiles::TileGrid,
+    optics::random::{Sequence, random_pair, random_state},
+};
 
 /// Side of a film in pixels: five tiles.
 const SIDE: u32 = 40;

@@ -1,14 +1,17 @@
 //! Materials to other programs' formats and back, through the command line.
 
-use glossmith::compile::compile;
-use glossmith::document::MaterialSettings;
-use glossmith::matching::lobe_of_material;
-use glossmith::optics::fresnel::fresnel;
-use glossmith::optics::lobe::model::LobeModel;
-use glossmith::optics::vector::vec3;
-use glossmith::store::exchange::FORMATS;
-use glossmith::store::preset::{command_line_name, load_material, material_text};
-use glossmith::store::{PRESETS, save_material};
+use glossmith::{
+    compile::compile,
+    document::MaterialSettings,
+    matching::lobe_of_material,
+    optics::{fresnel::fresnel, lobe::model::LobeModel, vector::vec3},
+    store::{
+        PRESETS,
+        exchange::FORMATS,
+        preset::{command_line_name, load_material, material_text},
+        save_material,
+    },
+};
 use serde_json::Value as Json;
 
 use crate::cli_support::Workplace;

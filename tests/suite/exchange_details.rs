@@ -1,20 +1,18 @@
 //! Details of what other programs' formats hold: each parameter where it belongs, and nothing said that is not so.
 
-use glossmith::document::assign;
-use glossmith::document::{CoatLobe, ImportLobe, MaterialSettings};
-use glossmith::import::{gltf_from_widths, load};
-use glossmith::optics::fresnel::Fresnel;
-use glossmith::optics::lobe::Lobe;
-use glossmith::scene::ModelSource;
-use glossmith::scene::texture::{TextureChannel, TextureTarget, UserTexture};
-use glossmith::store::exchange::{ReadOptions, read};
-use glossmith::store::{load_material, save_document, save_material};
+use glossmith::{
+    document::{CoatLobe, ImportLobe, MaterialSettings, assign},
+    import::gltf_from_widths,
+    import::load,
+    optics::fresnel::Fresnel,
+    optics::lobe::Lobe,
+    scene::ModelSource,
+    scene::texture::{TextureChannel, TextureTarget, UserTexture},
+    store::{exchange::ReadOptions, exchange::read, load_material, save_document, save_material},
+};
 use serde_json::Value as Json;
 
-use crate::cli_support::Workplace;
-use crate::gltf_builder::Folder;
-use crate::gltf_meaning::shining_by_vertices;
-use crate::textures::all_at_once;
+use crate::{cli_support::Workplace, gltf_builder::Folder, gltf_meaning::shining_by_vertices, textures::all_at_once};
 
 /// What a format writes of a material.
 fn written(place: &Workplace, material: &MaterialSettings, format: &str, ending: &str) -> String {

@@ -2,10 +2,14 @@
 
 use std::path::Path;
 
-use glossmith::import::Budget;
-use glossmith::import::environment::{EnvironmentError, load};
-use glossmith::import::picture::read_texture;
-use glossmith::scene::environment::{Environment, EnvironmentSource};
+use glossmith::{
+    import::{
+        Budget,
+        environment::{EnvironmentError, load},
+        picture::read_texture,
+    },
+    scene::environment::{Environment, EnvironmentSource},
+};
 use tempfile::TempDir;
 
 const SIZE: [usize; 2] = [4, 2];

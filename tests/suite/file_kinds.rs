@@ -4,12 +4,14 @@
 use std::path::{Path, PathBuf};
 
 use clap::CommandFactory as _;
-use glossmith::cli::Arguments;
-use glossmith::import::picture::mean_of_file;
-use glossmith::render::output;
-use glossmith::scene::environment::EnvironmentSource;
-use glossmith::store::exchange::FORMATS;
-use glossmith::store::file_kind::{FileKind, OPENED, PICTURE_KINDS, endings, may_hold_document};
+use glossmith::{
+    cli::Arguments,
+    import::picture::mean_of_file,
+    render::output,
+    scene::environment::EnvironmentSource,
+    store::exchange::FORMATS,
+    store::file_kind::{FileKind, OPENED, PICTURE_KINDS, endings, may_hold_document},
+};
 use image::{ImageFormat, RgbImage};
 use tempfile::tempdir;
 

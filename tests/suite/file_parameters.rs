@@ -1,13 +1,13 @@
 //! Tables of what becomes of a file's parameters: none of them is dropped in silence.
 
-use glossmith::document::{ImportLobe, MaterialSettings};
-use glossmith::import::{FileParameter, Goes, MTL_PARAMETERS};
-use glossmith::scene::Model;
-use glossmith::store::exchange::report::Entry;
-use glossmith::store::exchange::{ReadOptions, SURFACES, read};
+use glossmith::{
+    document::{ImportLobe, MaterialSettings},
+    import::{FileParameter, Goes, MTL_PARAMETERS},
+    scene::Model,
+    store::exchange::{ReadOptions, SURFACES, read, report::Entry},
+};
 
-use crate::cli_support::Workplace;
-use crate::gltf_builder::{Folder, png};
+use crate::{cli_support::Workplace, gltf_builder::Folder, gltf_builder::png};
 
 /// Parameters with their values.
 type Values = Vec<(&'static str, &'static str)>;

@@ -3,19 +3,20 @@
 
 use std::f64::consts::PI;
 
-use glossmith::document::of_model::materials_of;
-use glossmith::document::{AreaLightShape, Document, ImportLobe};
-use glossmith::import::load;
-use glossmith::optics::random::Sequence;
-use glossmith::render::{EngineChoice, Session};
-use glossmith::scene::camera::Projection;
-use glossmith::scene::environment::EnvironmentSource;
-use glossmith::scene::{Fate, Model};
+use glossmith::{
+    document::{AreaLightShape, Document, ImportLobe, of_model::materials_of},
+    import::load,
+    optics::random::Sequence,
+    render::{EngineChoice, Session},
+    scene::{Fate, Model, camera::Projection, environment::EnvironmentSource},
+};
 use serde_json::{Value, json};
 
-use super::gltf_builder::{Buffer, Folder, square};
-use super::gltf_extensions::says;
-use super::renders::{document, render};
+use super::{
+    gltf_builder::{Buffer, Folder, square},
+    gltf_extensions::says,
+    renders::{document, render},
+};
 
 const ENGINES: [EngineChoice; 2] = [EngineChoice::Cpu, EngineChoice::Gpu];
 

@@ -1,15 +1,13 @@
 //! Material and project files: round trips, other versions, damage, saving.
 
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::{fs, path::Path, path::PathBuf};
 
-use glossmith::document::{AreaLight, Background, Bookmark, Document, MaterialSettings, PARAMETERS};
-use glossmith::scene::ModelSource;
-use glossmith::scene::environment::EnvironmentSource;
-use glossmith::store::FileError;
-use glossmith::store::opened::{self, Opened};
-use glossmith::store::preset::{self, PRESETS, SHIPPED};
-use glossmith::store::project;
+use glossmith::{
+    document::{AreaLight, Background, Bookmark, Document, MaterialSettings, PARAMETERS},
+    scene::ModelSource,
+    scene::environment::EnvironmentSource,
+    store::{FileError, opened, opened::Opened, preset, preset::PRESETS, preset::SHIPPED, project},
+};
 use proptest::prelude::*;
 use serde_json::{Map, Value as Json, json};
 

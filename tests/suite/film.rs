@@ -2,8 +2,11 @@
 
 use std::borrow::Cow;
 
-use glossmith::job::film::{Extras, Film};
-use glossmith::job::tiles::{Order, Schedule, SliceLimits, TileGrid};
+use glossmith::job::{
+    film::Extras,
+    film::Film,
+    tiles::{Order, Schedule, SliceLimits, TileGrid},
+};
 
 /// Samples of a mean that is far larger than their spread.
 fn values(count: u32) -> impl Iterator<Item = f64> {

@@ -2,10 +2,12 @@
 
 use std::time::Duration;
 
-use glossmith::document::{AreaLight, Document, PixelFilter};
-use glossmith::job::film::Film;
-use glossmith::render::{EngineChoice, Session};
-use glossmith::scene::ModelSource;
+use glossmith::{
+    document::{AreaLight, Document, PixelFilter},
+    job::film::Film,
+    render::{EngineChoice, Session},
+    scene::ModelSource,
+};
 
 /// A shader ball in front of its light: much is reflected twice.
 fn scene(firefly_clamp: Option<f32>) -> Document {

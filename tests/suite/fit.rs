@@ -1,14 +1,16 @@
 //! Match look and lobe views against known values.
 
-use glossmith::analysis::fit::merl::{CELLS, SCALES};
-use glossmith::analysis::fit::{Measure, Merl, Nearest, nearest_roughness};
-use glossmith::document::MaterialSettings;
-use glossmith::matching::{MatchError, Target, match_look};
-use glossmith::optics::curve::Curve;
-use glossmith::optics::lobe::model::{LobeModel, view_direction};
-use glossmith::optics::lobe::{Lobe, phong};
-use glossmith::optics::vector::vec3;
-use glossmith::store::load_material;
+use glossmith::{
+    analysis::fit::{Measure, Merl, Nearest, merl::CELLS, merl::SCALES, nearest_roughness},
+    document::MaterialSettings,
+    matching::{MatchError, Target, match_look},
+    optics::{
+        curve::Curve,
+        lobe::{Lobe, model::LobeModel, model::view_direction, phong},
+        vector::vec3,
+    },
+    store::load_material,
+};
 
 use crate::cli_support::Workplace;
 

@@ -1,13 +1,13 @@
 //! The fuzz layer: its albedo by the published fits.
 
-use glossmith::document::{Document, MaterialSettings};
-use glossmith::render::{EngineChoice, Precision};
-use glossmith::scene::texture::TextureTarget;
-use glossmith::study::evaluate::Evaluator;
+use glossmith::{
+    document::{Document, MaterialSettings},
+    render::{EngineChoice, Precision},
+    scene::texture::TextureTarget,
+    study::evaluate::Evaluator,
+};
 
-use crate::gltf_builder::Folder;
-use crate::own_textures::coated_on_a_box;
-use crate::renders::material;
+use crate::{gltf_builder::Folder, own_textures::coated_on_a_box, renders::material};
 
 const ENGINES: [(EngineChoice, Precision); 2] = [
     (EngineChoice::Cpu, Precision::Single),

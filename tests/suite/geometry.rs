@@ -3,9 +3,10 @@
 use std::collections::HashMap;
 
 use glam::{DVec3, Vec2, Vec4};
-use glossmith::import::load;
-use glossmith::scene::mesh::{Mesh, plane_normal};
-use glossmith::scene::{Geometry, Loading, Model, ModelSource, Slot, teapot};
+use glossmith::{
+    import::load,
+    scene::{Geometry, Loading, Model, ModelSource, Slot, mesh::Mesh, mesh::plane_normal, teapot},
+};
 
 const BUILT_IN: [ModelSource; 4] = [
     ModelSource::Teapot,

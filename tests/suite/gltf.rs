@@ -3,8 +3,7 @@
 use std::fs;
 
 use glam::{DVec3, Vec2, Vec3};
-use glossmith::scene::texture::TextureTarget;
-use glossmith::scene::{AlphaMode, Fate, Wrap};
+use glossmith::scene::{AlphaMode, Fate, Wrap, texture::TextureTarget};
 use serde_json::{Value, json};
 
 use super::gltf_builder::{Buffer, Folder, SQUARE, glb, png, square};

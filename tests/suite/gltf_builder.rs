@@ -1,11 +1,11 @@
 //! Small glTF files for tests.
 
-use std::fs;
-use std::path::PathBuf;
+use std::{fs, path::PathBuf};
 
-use glossmith::import::{ModelError, load};
-use glossmith::scene::mesh::Mesh;
-use glossmith::scene::{Model, ModelSource};
+use glossmith::{
+    import::{ModelError, load},
+    scene::{Model, ModelSource, mesh::Mesh},
+};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 

@@ -1,14 +1,14 @@
 //! What glTF says of materials and pictures beyond its core: extensions, picture formats, tangents.
 
-use glossmith::compile::compile_textured;
-use glossmith::document::of_model::materials_of;
-use glossmith::document::{ImportLobe, MaterialSettings};
-use glossmith::optics::lobe::stretch_from_anisotropy;
-use glossmith::optics::thin_film::film_path;
-use glossmith::optics::tone::linear_from_srgb;
-use glossmith::optics::vector::Vec3;
-use glossmith::scene::texture::{TextureTarget, Textures, textured_material};
-use glossmith::scene::{Fate, Model};
+use glossmith::{
+    compile::compile_textured,
+    document::{ImportLobe, MaterialSettings, of_model::materials_of},
+    optics::{lobe::stretch_from_anisotropy, thin_film::film_path, tone::linear_from_srgb, vector::Vec3},
+    scene::{
+        Fate, Model,
+        texture::{TextureTarget, Textures, textured_material},
+    },
+};
 use serde_json::{Value, json};
 
 use super::gltf_builder::{Folder, pictured, png};

@@ -1,16 +1,18 @@
 //! What the numbers of a glTF file mean, as pixels: both engines show what the format says.
 
-use glossmith::document::of_model::materials_of;
-use glossmith::document::{Background, Document, ImportLobe};
-use glossmith::import::{GLTF_PARAMETERS, Goes, load};
-use glossmith::render::EngineChoice;
-use glossmith::scene::environment::EnvironmentSource;
-use glossmith::scene::{ModelOptions, ModelSource};
+use glossmith::{
+    document::{Background, Document, ImportLobe, of_model::materials_of},
+    import::{GLTF_PARAMETERS, Goes, load},
+    render::EngineChoice,
+    scene::{ModelOptions, ModelSource, environment::EnvironmentSource},
+};
 use serde_json::{Value, json};
 
-use super::gltf_builder::{Buffer, Folder, glb, pictured, png, put, square};
-use super::gltf_extensions::load_plain;
-use super::renders::render;
+use super::{
+    gltf_builder::{Buffer, Folder, glb, pictured, png, put, square},
+    gltf_extensions::load_plain,
+    renders::render,
+};
 
 const SIZE: u32 = 17;
 

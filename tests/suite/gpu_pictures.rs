@@ -1,18 +1,20 @@
 //! Pictures in the containers of GPUs and of many bits: cube maps and panoramas in KTX2 and DDS, and
 //! textures of 16 bits.
 
-use super::environment_shapes::{FACES, assert_is_that_cube};
-use super::gltf_builder::{Folder, pictured};
-use super::gltf_extensions::load_plain;
-use glossmith::import::environment::load;
-use glossmith::optics::material::NO_TEXTURE;
-use glossmith::optics::tone::{linear_from_srgb, srgb_from_linear};
-use glossmith::optics::vector::Vec3;
-use glossmith::scene::environment::EnvironmentSource;
-use glossmith::scene::texture::TextureTarget;
-use glossmith::scene::texture::scale::scaled_to;
-use glossmith::scene::texture::{Textures, texture_lookup};
-use glossmith::scene::{Fate, Model, Texture};
+use super::{
+    environment_shapes::{FACES, assert_is_that_cube},
+    gltf_builder::{Folder, pictured},
+    gltf_extensions::load_plain,
+};
+use glossmith::{
+    import::environment::load,
+    optics::{material::NO_TEXTURE, tone::linear_from_srgb, tone::srgb_from_linear, vector::Vec3},
+    scene::{
+        Fate, Model, Texture,
+        environment::EnvironmentSource,
+        texture::{TextureTarget, Textures, scale::scaled_to, texture_lookup},
+    },
+};
 use half::f16;
 use image::{DynamicImage, ImageBuffer, Rgb};
 use serde_json::json;

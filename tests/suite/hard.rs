@@ -2,9 +2,11 @@
 
 use std::path::Path;
 
-use glossmith::render::EngineChoice;
-use glossmith::study::check::Check;
-use glossmith::study::hard::{HardOptions, Stage, catalogue, markdown, run};
+use glossmith::{
+    render::EngineChoice,
+    study::check::Check,
+    study::hard::{HardOptions, Stage, catalogue, markdown, run},
+};
 
 /// Those that compare f32 with f64, which take most of the time, or the others.
 fn assert_hold(engine: EngineChoice, against_f64: bool) {

@@ -3,11 +3,12 @@
 
 use fearless_simd::Level;
 use glam::{DMat4, DQuat, DVec3, EulerRot, Vec3, Vec4};
-use glossmith::import::load;
-use glossmith::instructions::Instructions;
-use glossmith::scene::mesh::Mesh;
-use glossmith::scene::{
-    Geometry, Hit, MeshInstance, Model, ModelSource, PACKET, Packet, Slot, ray_octant, shapes, teapot,
+use glossmith::{
+    import::load,
+    instructions::Instructions,
+    scene::{
+        Geometry, Hit, MeshInstance, Model, ModelSource, PACKET, Packet, Slot, mesh::Mesh, ray_octant, shapes, teapot,
+    },
 };
 use rayon::prelude::*;
 

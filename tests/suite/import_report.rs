@@ -8,10 +8,12 @@ use glossmith::app::actions::{Action, Command};
 use glossmith::scene::ModelSource;
 use serde_json::{Value, json};
 
-use super::cli_support::Workplace;
-use super::gltf_builder::{Buffer, Folder, glb, square};
-use super::ui::{editor, request, see_label, wait};
-use super::ui_hands::Hands as _;
+use super::{
+    cli_support::Workplace,
+    gltf_builder::{Buffer, Folder, glb, square},
+    ui::{editor, request, see_label, wait},
+    ui_hands::Hands as _,
+};
 
 /// A square in two variants, one with a texture that is not there.
 fn variants() -> (Buffer, Value) {

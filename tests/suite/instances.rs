@@ -1,12 +1,12 @@
 //! Meshes that many nodes of a file show: in memory once, and seen as if each node had a mesh of its own.
 
 use glam::{DMat4, DQuat, DVec3, EulerRot};
-use glossmith::document::of_model::materials_of;
-use glossmith::document::{Document, ImportLobe};
-use glossmith::import::load;
-use glossmith::render::{EngineChoice, Session, SessionError};
-use glossmith::scene::environment::EnvironmentSource;
-use glossmith::scene::{Geometry, Loading, Model, ModelSource, NO_OBJECT, teapot};
+use glossmith::{
+    document::{Document, ImportLobe, of_model::materials_of},
+    import::load,
+    render::{EngineChoice, Session, SessionError},
+    scene::{Geometry, Loading, Model, ModelSource, NO_OBJECT, environment::EnvironmentSource, teapot},
+};
 use serde_json::{Value, json};
 
 use super::gltf_builder::{Buffer, Folder};

@@ -1,11 +1,8 @@
 //! A process that is killed while it saves leaves the old file or the new one.
 
-use std::path::Path;
-use std::process::{Command, Stdio};
-use std::time::{Duration, Instant};
+use std::{path::Path, process::Command, process::Stdio, time::Duration, time::Instant};
 
-use glossmith::document::{Bookmark, Document};
-use glossmith::store::{load_document, save_document};
+use glossmith::{document::Bookmark, document::Document, store::load_document, store::save_document};
 
 use super::support::Random;
 

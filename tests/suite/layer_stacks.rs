@@ -1,13 +1,14 @@
 //! Stacks of layers one setting away from the defaults, against closed forms: energy, indices under coats and films,
 //! stretched lobes, weights that come in, and light that the bounce limit cuts.
 
-use glossmith::compile::compile;
-use glossmith::document::{MaterialSettings, PARAMETERS, assign};
-use glossmith::optics::material::COMPENSATES;
-use glossmith::render::{EngineChoice, Precision};
-use glossmith::scene::ModelSource;
-use glossmith::scene::environment::EnvironmentSource;
-use glossmith::study::evaluate::{Albedo, Evaluator};
+use glossmith::{
+    compile::compile,
+    document::{MaterialSettings, PARAMETERS, assign},
+    optics::material::COMPENSATES,
+    render::{EngineChoice, Precision},
+    scene::{ModelSource, environment::EnvironmentSource},
+    study::evaluate::{Albedo, Evaluator},
+};
 
 use super::renders::{document, material, render};
 use super::support::Random;
@@ -150,12 +151,19 @@ fn thick_films_keep_all_light() {
     let white = "base.metalness=0 base.color=1,1,1 specular.fresnel=dielectric";
     for below in [white, GLASS] {
         for lobe in ["ggx", "geometric"] {
-            for film in ["0 thin_film.thickness=2", "0 thin_film.thickness=10", "0.3 thin_film.thickness=10"] {
+            for film in [
+                "0 thin_film.thickness=2",
+                "0 thin_film.thickness=10",
+                "0.3 thin_film.thickness=10",
+            ] {
                 let own = format!("specular.lobe={lobe} thin_film.weight=1 thin_film.ior=2 specular.roughness={film}");
                 let filmed = material(&format!("{below} {own}"));
                 for cosine in [1.0, 0.6, 0.3, 0.1] {
                     let found = sums(&albedo(&filmed, cosine, 1 << 14));
-                    assert!(found.iter().all(|sum| (sum - 1.0).abs() < 0.008), "{own} at {cosine}: {found:?}");
+                    assert!(
+                        found.iter().all(|sum| (sum - 1.0).abs() < 0.008),
+                        "{own} at {cosine}: {found:?}"
+                    );
                 }
             }
         }

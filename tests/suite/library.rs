@@ -2,19 +2,22 @@
 
 use std::path::Path;
 
-use egui::Key;
-use egui::accesskit::Role;
+use egui::{Key, accesskit::Role};
 use egui_kittest::kittest::Queryable as _;
-use glossmith::app::Options;
-use glossmith::app::actions::{Action, Command};
-use glossmith::document::MaterialSettings;
-use glossmith::render::thumbnails::key;
-use glossmith::scene::texture::{TextureTarget, UserTexture};
-use glossmith::store::{PRESETS, library, load_material};
+use glossmith::{
+    app::Options,
+    app::actions::{Action, Command},
+    document::MaterialSettings,
+    render::thumbnails::key,
+    scene::texture::{TextureTarget, UserTexture},
+    store::{PRESETS, library, load_material},
+};
 
-use super::ui::{Editor, editor_of, options, request, see, wait};
-use super::ui_files::wait_for_words;
-use super::ui_hands::{Hands as _, press};
+use super::{
+    ui::{Editor, editor_of, options, request, see, wait},
+    ui_files::wait_for_words,
+    ui_hands::{Hands as _, press},
+};
 
 /// An editor with the user's folder, its panel showing only what has this in its name.
 fn editor_showing(data: &Path, name: &str) -> Editor {

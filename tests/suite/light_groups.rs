@@ -1,15 +1,13 @@
 //! Light groups: their light adds up to all light on both engines, each is the light of its sources alone, and their mix
 //! needs no new samples.
 
-use super::cli_support::{Workplace, channels};
-use super::lights::lit_scenes;
-use super::renders::{document, render};
-use glossmith::document::light_groups::emission_group;
-use glossmith::document::{AreaLight, Background, Document, GroundKind, GroupName, LightMix};
-use glossmith::job::film::Film;
-use glossmith::render::{EngineChoice, Session};
-use glossmith::scene::ModelSource;
-use glossmith::scene::environment::EnvironmentSource;
+use super::{cli_support::Workplace, cli_support::channels, lights::lit_scenes, renders::document, renders::render};
+use glossmith::{
+    document::{AreaLight, Background, Document, GroundKind, GroupName, LightMix, light_groups::emission_group},
+    job::film::Film,
+    render::{EngineChoice, Session},
+    scene::{ModelSource, environment::EnvironmentSource},
+};
 use std::collections::BTreeSet;
 
 /// Scenes whose groups are summed apart: with lights, emission and a shadow catcher, of few samples.

@@ -2,14 +2,13 @@
 
 use std::f32::consts::SQRT_2;
 
-use glossmith::document::{Background, Document, GroundKind, LightPaths};
-use glossmith::render::EngineChoice;
-use glossmith::scene::ModelSource;
-use glossmith::scene::environment::EnvironmentSource;
+use glossmith::{
+    document::{Background, Document, GroundKind, LightPaths},
+    render::EngineChoice,
+    scene::{ModelSource, environment::EnvironmentSource},
+};
 
-use super::cli_support::Workplace;
-use super::lights::lit_scenes;
-use super::renders::{document, render};
+use super::{cli_support::Workplace, lights::lit_scenes, renders::document, renders::render};
 
 /// Scenes where light is reflected between surfaces, with lights and without, and with a shadow catcher.
 fn scenes() -> Vec<(&'static str, Document)> {

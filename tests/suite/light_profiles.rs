@@ -1,18 +1,21 @@
 //! Light profiles: the light below a lamp is that of its file's intensities on both engines; files and names on the
 //! command line and in projects. The files are built here.
 
-use super::cli_support::{Workplace, read_exr};
-use super::renders::{document, render};
+use super::{cli_support::Workplace, cli_support::read_exr, renders::document, renders::render};
 use glam::DVec3;
-use glossmith::document::{AreaLight, AreaLightShape, Background, Document, ProfileFile};
-use glossmith::import::light_profile;
-use glossmith::optics::vector::Vec3;
-use glossmith::render::EngineChoice;
-use glossmith::scene::camera::PixelFilter;
-use glossmith::scene::environment::EnvironmentSource;
-use glossmith::scene::light_profile::{LightProfile, profile_share};
-use glossmith::scene::{AreaFrame, AreaShape, ModelSource, Outline};
-use glossmith::store::{load_document, save_document};
+use glossmith::{
+    document::{AreaLight, AreaLightShape, Background, Document, ProfileFile},
+    import::light_profile,
+    optics::vector::Vec3,
+    render::EngineChoice,
+    scene::{
+        AreaFrame, AreaShape, ModelSource, Outline,
+        camera::PixelFilter,
+        environment::EnvironmentSource,
+        light_profile::{LightProfile, profile_share},
+    },
+    store::{load_document, save_document},
+};
 use std::f64::consts::PI;
 
 /// A lamp that shines along its width, hardly along its height, and not upwards.

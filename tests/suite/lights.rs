@@ -1,21 +1,23 @@
 //! Surfaces that emit: their sampler against its density, area lights against Lambert's formula, the strategies and
 //! engines against each other.
 
-use crate::environment::triple;
-use crate::renders::document;
-use crate::support::Random;
+use crate::{environment::triple, renders::document, support::Random};
 use glam::{DVec3, Vec2, Vec4};
-use glossmith::analysis::chi_square::test_counts;
-use glossmith::compile::compile;
-use glossmith::document::{AreaLight, AreaLightShape, Background, Document};
-use glossmith::optics::material::Material;
-use glossmith::optics::vector::{Vec3, vec3};
-use glossmith::scene::camera::orbit_direction;
-use glossmith::scene::environment::EnvironmentSource;
-use glossmith::scene::light::{Emitters, Lights, light_density, light_sample, spot_share};
-use glossmith::scene::mesh::Mesh;
-use glossmith::scene::texture::Textures;
-use glossmith::scene::{Geometry, Model, ModelSource, Slot};
+use glossmith::{
+    analysis::chi_square::test_counts,
+    compile::compile,
+    document::{AreaLight, AreaLightShape, Background, Document},
+    optics::material::Material,
+    optics::vector::{Vec3, vec3},
+    scene::{
+        Geometry, Model, ModelSource, Slot,
+        camera::orbit_direction,
+        environment::EnvironmentSource,
+        light::{Emitters, Lights, light_density, light_sample, spot_share},
+        mesh::Mesh,
+        texture::Textures,
+    },
+};
 use std::f64::consts::PI;
 
 /// Rows of cells that a triangle is cut into.

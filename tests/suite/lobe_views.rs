@@ -1,12 +1,15 @@
 //! Views of lobes: their numbers against known ones, their files.
 
-use glossmith::analysis::quadrature::integrate_hemisphere;
-use glossmith::optics::curve::Curve;
-use glossmith::optics::lobe::lobe_evaluate;
-use glossmith::optics::lobe::model::{LobeModel, NORMAL, view_direction};
-use glossmith::optics::lobe::{Horizon, Lobe};
-use glossmith::plot::lobe_view::{LinePlot, LobeView, ViewKind, lobe_view};
-use glossmith::plot::plot_file;
+use glossmith::{
+    analysis::quadrature::integrate_hemisphere,
+    optics::curve::Curve,
+    optics::lobe::{
+        Horizon, Lobe, lobe_evaluate,
+        model::{LobeModel, NORMAL, view_direction},
+    },
+    plot::lobe_view::{LinePlot, LobeView, ViewKind, lobe_view},
+    plot::plot_file,
+};
 
 fn lines(kind: ViewKind, lobe: &LobeModel, angles_deg: &[f64]) -> LinePlot {
     match lobe_view(kind, std::slice::from_ref(lobe), angles_deg) {

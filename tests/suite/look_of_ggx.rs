@@ -2,17 +2,21 @@
 
 use std::f64::consts::PI;
 
-use glossmith::compile::{compile, compile_textured};
-use glossmith::document::import::geometric_from_ggx;
-use glossmith::document::of_model::{import_report, materials_of};
-use glossmith::document::{ImportLobe, MaterialSettings};
-use glossmith::optics::frame::frame_from_normal;
-use glossmith::optics::lobe::{Lobe, LobeShape, is_mirror, lobe_sample};
-use glossmith::optics::material::Material;
-use glossmith::optics::random::{Sequence, random_pair, random_state};
-use glossmith::optics::vector::vec3;
-use glossmith::scene::texture::{Textures, textured_material};
-use glossmith::scene::{Model, Slot};
+use glossmith::{
+    compile::compile,
+    compile::compile_textured,
+    document::{
+        ImportLobe, MaterialSettings, import::geometric_from_ggx, of_model::import_report, of_model::materials_of,
+    },
+    optics::{
+        frame::frame_from_normal,
+        lobe::{Lobe, LobeShape, is_mirror, lobe_sample},
+        material::Material,
+        random::{Sequence, random_pair, random_state},
+        vector::vec3,
+    },
+    scene::{Model, Slot, texture::Textures, texture::textured_material},
+};
 use image::{Rgba, RgbaImage};
 use serde_json::json;
 

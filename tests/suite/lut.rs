@@ -1,12 +1,12 @@
 //! Tables of colours: by the command line and in projects.
 
 use super::cli_support::Workplace;
-use glossmith::document::Document;
-use glossmith::optics::tone::Lut;
-use glossmith::optics::vector::vec3;
-use glossmith::scene::ModelSource;
-use glossmith::store::lut::load;
-use glossmith::store::{load_document, save_document};
+use glossmith::{
+    document::Document,
+    optics::{tone::Lut, vector::vec3},
+    scene::ModelSource,
+    store::{load_document, lut::load, save_document},
+};
 
 /// Black for white and white for black.
 const NEGATIVE: &str = "TITLE \"negative\"\nLUT_1D_SIZE 2\n1 1 1\n0 0 0\n";

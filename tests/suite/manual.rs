@@ -2,14 +2,14 @@
 
 use egui::{Key, Vec2};
 use egui_kittest::kittest::Queryable as _;
-use glossmith::app::book::{self, CONTENTS, OF_SHEETS, Pages, Section};
-use glossmith::app::layout::Pane;
-use std::path::Path;
-use std::sync::LazyLock;
+use glossmith::app::{
+    book,
+    book::{CONTENTS, OF_SHEETS, Pages, Section},
+    layout::Pane,
+};
+use std::{path::Path, sync::LazyLock};
 
-use super::docs::text_of;
-use super::ui::{Editor, editor};
-use super::ui_hands::{Hands as _, press};
+use super::{docs::text_of, ui::Editor, ui::editor, ui_hands::Hands as _, ui_hands::press};
 
 macro_rules! pages {
     ($($path:literal)*) => {

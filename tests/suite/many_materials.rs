@@ -1,18 +1,16 @@
 //! Scenes with more materials than an adapter's uniforms hold.
 
-use std::sync::Arc;
-use std::time::Duration;
+use std::{sync::Arc, time::Duration};
 
-use glossmith::document::Document;
-use glossmith::gpu::scene_group::FEW_MATERIALS;
-use glossmith::gpu::{AdapterKind, GpuDevice, GpuEngine};
-use glossmith::job::Job;
-use glossmith::optics::material::Material;
-use glossmith::optics::vector::Vec3;
-use glossmith::render::{EngineChoice, Session};
+use glossmith::{
+    document::Document,
+    gpu::{AdapterKind, GpuDevice, GpuEngine, scene_group::FEW_MATERIALS},
+    job::Job,
+    optics::{material::Material, vector::Vec3},
+    render::{EngineChoice, Session},
+};
 
-use super::plan::job_in;
-use super::random_documents::apart;
+use super::{plan::job_in, random_documents::apart};
 
 /// The job with its one material in the last of so many slots; all others shine.
 fn in_the_last_of(slots: usize, job: &Job) -> Job {

@@ -2,12 +2,13 @@
 
 use std::process::Command;
 
-use glossmith::document::{Background, Denoise, Document};
-use glossmith::render::{EngineChoice, Session, SessionError};
-use glossmith::store::project::document_text;
+use glossmith::{
+    document::{Background, Denoise, Document},
+    render::{EngineChoice, Session, SessionError},
+    store::project::document_text,
+};
 
-use crate::cli_support::Workplace;
-use crate::worker::small_document;
+use crate::{cli_support::Workplace, worker::small_document};
 
 const MIB: u64 = 1 << 20;
 

@@ -1,7 +1,6 @@
 //! One picture's samples rendered apart and joined.
 
-use std::collections::HashMap;
-use std::path::Path;
+use std::{collections::HashMap, path::Path};
 
 use exr::prelude::{FlatSamples, ReadChannels as _, ReadLayers as _, read};
 

@@ -3,11 +3,11 @@
 use super::gltf_builder::{Folder, glb, png, square};
 use super::gltf_extensions::says;
 use glam::{DVec3, Vec2, Vec3};
-use glossmith::document::ImportLobe;
-use glossmith::document::of_model::materials_of;
-use glossmith::import::load;
-use glossmith::scene::texture::TextureTarget;
-use glossmith::scene::{Fate, Geometry, Model, ModelSource, Wrap};
+use glossmith::{
+    document::{ImportLobe, of_model::materials_of},
+    import::load,
+    scene::{Fate, Geometry, Model, ModelSource, Wrap, texture::TextureTarget},
+};
 use std::io::Write;
 
 const OBJ: &str = "mtllib paint.mtl\no Plate\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n\

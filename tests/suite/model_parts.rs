@@ -2,12 +2,16 @@
 
 use std::path::PathBuf;
 
-use glossmith::document::Document;
-use glossmith::import::{ModelError, load_watched, load_with};
-use glossmith::scene::environment::{EnvironmentEncoding, EnvironmentSource};
-use glossmith::scene::texture::TextureTarget;
-use glossmith::scene::{Fate, Geometry, Loading, ModelOptions, ModelSource};
-use glossmith::store::{load_document, save_document};
+use glossmith::{
+    document::Document,
+    import::{ModelError, load_watched, load_with},
+    scene::{
+        Fate, Geometry, Loading, ModelOptions, ModelSource,
+        environment::{EnvironmentEncoding, EnvironmentSource},
+        texture::TextureTarget,
+    },
+    store::{load_document, save_document},
+};
 use serde_json::json;
 
 use super::cli_support::{write_exr, write_hdr};

@@ -5,8 +5,7 @@ use std::sync::Arc;
 use glossmith::document::{AreaLight, AreaLightShape, Document};
 use glossmith::render::{EngineChoice, Session};
 
-use super::refused::{is_alike, render};
-use super::worker::small_document;
+use super::{refused::is_alike, refused::render, worker::small_document};
 
 fn submitted(session: &mut Session, document: &Document) {
     session.submit(document).expect("it is sound");

@@ -1,8 +1,6 @@
 //! Words never decide what becomes of a picture: the program run with an output that is closed, or on a full disk.
 
-use std::fs::File;
-use std::io::pipe;
-use std::process::{Command, Stdio};
+use std::{fs::File, io::pipe, process::Command, process::Stdio};
 
 use super::cli_support::Workplace;
 

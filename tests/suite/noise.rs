@@ -3,14 +3,15 @@
 
 use std::time::Duration;
 
-use glossmith::analysis::error::{Estimates, z_test};
-use glossmith::analysis::noise::noise;
-use glossmith::document::{AreaLight, Background, Document};
-use glossmith::job::film::Film;
-use glossmith::optics::random::Sequence;
-use glossmith::render::{EngineChoice, Session, StopReason};
-use glossmith::scene::ModelSource;
-use glossmith::scene::environment::EnvironmentSource;
+use glossmith::{
+    analysis::error::{Estimates, z_test},
+    analysis::noise::noise,
+    document::{AreaLight, Background, Document},
+    job::film::Film,
+    optics::random::Sequence,
+    render::{EngineChoice, Session, StopReason},
+    scene::{ModelSource, environment::EnvironmentSource},
+};
 
 use crate::renders::set;
 

@@ -1,16 +1,14 @@
 //! Unsaved edits: put aside, offered after a crash, asked about before they go; and the files opened last.
 
-use std::path::Path;
-use std::time::Duration;
+use std::{path::Path, time::Duration};
 
-use egui::accesskit::Role;
-use egui::{Key, ViewportCommand, ViewportEvent, ViewportId};
+use egui::{Key, ViewportCommand, ViewportEvent, ViewportId, accesskit::Role};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use glossmith::app::actions::{Action, Command};
-use glossmith::app::{App, Options};
-use glossmith::document::Document;
-use glossmith::store::examples::still_life;
-use glossmith::store::{PRESETS, load_document, save_document};
+use glossmith::{
+    app::{App, Options, actions::Action, actions::Command},
+    document::Document,
+    store::{PRESETS, examples::still_life, load_document, save_document},
+};
 
 use super::ui::{Editor, editor_of, options, request, see, wait};
 use super::ui_hands::{Hands as _, press};

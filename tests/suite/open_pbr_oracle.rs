@@ -4,16 +4,19 @@
 //! that facets scatter more than once is a lobe of its own there and a factor here, so peaks are compared without it, and
 //! albedos with it.
 
-use std::collections::BTreeMap;
-use std::fmt::Write as _;
+use std::{collections::BTreeMap, fmt::Write as _};
 
-use glossmith::document::{ImportLobe, MaterialSettings, assign};
-use glossmith::optics::fresnel::{fresnel_dielectric, fresnel_f0};
-use glossmith::optics::layer::coat::inner_reflection;
-use glossmith::optics::vector::Vec3;
-use glossmith::render::{EngineChoice, Precision};
-use glossmith::store::exchange::{ReadOptions, find};
-use glossmith::study::evaluate::{Albedo, Evaluator};
+use glossmith::{
+    document::{ImportLobe, MaterialSettings, assign},
+    optics::{
+        fresnel::{fresnel_dielectric, fresnel_f0},
+        layer::coat::inner_reflection,
+        vector::Vec3,
+    },
+    render::{EngineChoice, Precision},
+    store::exchange::{ReadOptions, find},
+    study::evaluate::{Albedo, Evaluator},
+};
 
 use crate::cli_support::Workplace;
 

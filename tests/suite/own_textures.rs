@@ -1,27 +1,31 @@
 //! Pictures of the user's own: where they lie, what of them counts, that both engines see the same, and that files keep them.
 
-use std::path::Path;
-use std::sync::Arc;
+use std::{path::Path, sync::Arc};
 
-use glossmith::compile::compile_textured;
-use glossmith::document::{Document, PixelFilter};
-use glossmith::optics::tone::linear_from_srgb;
-use glossmith::optics::vector::Vec3;
-use glossmith::scene::environment::EnvironmentSource;
-use glossmith::scene::texture::{
-    Pack, TextureChannel, TextureProjection, TextureSpace, TextureTarget, Textures, UserTexture, UserTextures,
-    mapped_normal, texture_lookup, uvs_at,
+use glossmith::{
+    compile::compile_textured,
+    document::{Document, PixelFilter},
+    import::{Budget, picture::read_texture},
+    optics::{tone::linear_from_srgb, vector::Vec3},
+    scene::{
+        Geometry, Model, ModelSource, Texture,
+        environment::EnvironmentSource,
+        texture::{
+            Pack, TextureChannel, TextureProjection, TextureSpace, TextureTarget, Textures, UserTexture, UserTextures,
+            mapped_normal, texture_lookup, uvs_at,
+        },
+    },
+    store::{PRESETS, load_document, load_material, save_document, save_material},
 };
-use glossmith::import::{Budget, picture::read_texture};
-use glossmith::scene::{Geometry, Model, ModelSource, Texture};
-use glossmith::store::{PRESETS, load_document, load_material, save_document, save_material};
 use image::{Rgba, RgbaImage};
 use serde_json::json;
 
-use crate::gltf_builder::Folder;
-use crate::gltf_extensions::load_plain;
-use crate::random_documents::of_material;
-use crate::textures::{four_texels, textured_square};
+use crate::{
+    gltf_builder::Folder,
+    gltf_extensions::load_plain,
+    random_documents::of_material,
+    textures::{four_texels, textured_square},
+};
 
 /// The picture of [`four_texels`] in a file.
 pub fn own_texture(folder: &Folder) -> UserTexture {
@@ -363,7 +367,9 @@ fn files_keep_pictures_by_relative_paths() {
 
 #[test]
 fn maps_of_shipped_materials_are_in_the_program_and_stay_named() {
-    let with_maps = PRESETS.iter().filter(|material| material.user_textures.iter().next().is_some());
+    let with_maps = PRESETS
+        .iter()
+        .filter(|material| material.user_textures.iter().next().is_some());
     let folder = Folder::new();
     let mut count = 0;
     for material in with_maps {
@@ -376,7 +382,10 @@ fn maps_of_shipped_materials_are_in_the_program_and_stay_named() {
         let path = folder.path("project.json");
         save_document(&path, &document).unwrap();
         let loaded = load_document(&path).unwrap();
-        assert_eq!((loaded.value.materials, loaded.warnings), (document.materials, Vec::new()));
+        assert_eq!(
+            (loaded.value.materials, loaded.warnings),
+            (document.materials, Vec::new())
+        );
     }
     assert_eq!(count, 8);
 }

@@ -1,12 +1,15 @@
 //! Parameters of materials and settings of documents: what they take, as text, in files and by their keys.
 
-use glossmith::document::parameter::{Kind, Parameter, Precision, Value, assign, parameter, parse_color};
-use glossmith::document::{Change, Conductor, Document, MaterialSettings, PARAMETERS, SETTINGS, Stage};
-use glossmith::render::EngineChoice;
-use glossmith::store::{PRESETS, preset};
+use glossmith::{
+    document::{
+        Change, Conductor, Document, MaterialSettings, PARAMETERS, SETTINGS, Stage,
+        parameter::{Kind, Parameter, Precision, Value, assign, parameter, parse_color},
+    },
+    render::EngineChoice,
+    store::{PRESETS, preset},
+};
 
-use super::renders::render;
-use super::worker::small_document;
+use super::{renders::render, worker::small_document};
 
 /// Values of a kind: both ends and something between, every choice.
 fn values_of(kind: &Kind) -> Vec<Value> {

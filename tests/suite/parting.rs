@@ -3,13 +3,14 @@
 
 use std::time::Duration;
 
-use glossmith::cpu::recorder::Event;
-use glossmith::document::Document;
-use glossmith::document::effect::EffectSwitches;
-use glossmith::job::film::Film;
-use glossmith::render::{Assets, EngineChoice, Session};
-use glossmith::scene::{Model, ModelSource};
-use glossmith::study::explain::{PathAccount, explain};
+use glossmith::{
+    cpu::recorder::Event,
+    document::{Document, effect::EffectSwitches},
+    job::film::Film,
+    render::{Assets, EngineChoice, Session},
+    scene::{Model, ModelSource},
+    study::explain::{PathAccount, explain},
+};
 
 /// Radiances that count as the same, relative to the larger one and to the picture's mean.
 const SAME: f64 = 2e-3;

@@ -1,28 +1,29 @@
 //! Paths one by one: their accounts add up to what the engine adds, and no random number serves twice.
 
-use std::collections::HashSet;
-use std::time::Duration;
+use std::{collections::HashSet, time::Duration};
 
-use glossmith::cpu::integrator::PathResult;
-use glossmith::cpu::oracle::{PathTracer, TileSamples, trace_tile};
-use glossmith::cpu::recorder::{Event, Purpose};
-use glossmith::document::effect::EffectSwitches;
-use glossmith::document::{AreaLight, Document, MaterialSettings, Strategy};
-use glossmith::job::tiles::TileGrid;
-use glossmith::optics::layer::decides_by_facet;
-use glossmith::optics::lobe::Lobe;
-use glossmith::optics::random::Sequence;
-use glossmith::render::{EngineChoice, Session};
-use glossmith::scene::environment::EnvironmentSource;
-use glossmith::scene::{Model, ModelSource, Slot};
-use glossmith::study::explain::explain;
+use glossmith::{
+    cpu::{
+        integrator::PathResult,
+        oracle::{PathTracer, TileSamples, trace_tile},
+        recorder::{Event, Purpose},
+    },
+    document::{AreaLight, Document, MaterialSettings, Strategy, effect::EffectSwitches},
+    job::tiles::TileGrid,
+    optics::{layer::decides_by_facet, lobe::Lobe, random::Sequence},
+    render::{EngineChoice, Session},
+    scene::{Model, ModelSource, Slot, environment::EnvironmentSource},
+    study::explain::explain,
+};
 
-use crate::analytic_media::ball_with_inserts;
-use crate::analytic_scenes::room;
-use crate::lights::lit_scenes;
-use crate::random_documents::random_document;
-use crate::renders::document;
-use crate::support::{Random, sets};
+use crate::{
+    analytic_media::ball_with_inserts,
+    analytic_scenes::room,
+    lights::lit_scenes,
+    random_documents::random_document,
+    renders::document,
+    support::{Random, sets},
+};
 
 /// A document and the model that it names, where that is not built in.
 pub struct Scene {

@@ -1,25 +1,25 @@
 //! Pictures as files: every format and every channel against the film that it was made of; and what pictures that are read
 //! say of their texels.
 
-use crate::cli_support::{Workplace, channels};
-use crate::gltf_builder::pictured;
-use crate::gltf_extensions::load_plain;
-use crate::gpu_pictures::ktx2;
-use crate::renders::set;
+use crate::{
+    cli_support::{Workplace, channels},
+    gltf_builder::pictured,
+    gltf_extensions::load_plain,
+    gpu_pictures::ktx2,
+    renders::set,
+};
 use exr::prelude::WritableImage as _;
-use glossmith::document::{AreaLight, Background, Document};
-use glossmith::import::{Budget, environment::load, picture::read_texture};
-use glossmith::job::film::Film;
-use glossmith::optics::tone::ToneCurve;
-use glossmith::render::output::{self, Layers};
-use glossmith::render::{EngineChoice, Session};
-use glossmith::scene::ModelSource;
-use glossmith::scene::environment::EnvironmentSource;
+use glossmith::{
+    document::{AreaLight, Background, Document},
+    import::{Budget, environment::load, picture::read_texture},
+    job::film::Film,
+    optics::tone::ToneCurve,
+    render::{EngineChoice, Session, output, output::Layers},
+    scene::{ModelSource, environment::EnvironmentSource},
+};
 use image::ImageEncoder as _;
 use serde_json::json;
-use std::collections::HashMap;
-use std::path::Path;
-use std::time::Duration;
+use std::{collections::HashMap, path::Path, time::Duration};
 
 /// Coloured, brighter than white in places, its pixels covered in part or not at all, with more samples here than there.
 fn document() -> Document {

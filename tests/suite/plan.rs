@@ -2,18 +2,22 @@
 
 use std::time::Duration;
 
-use glossmith::document::effect::{EFFECTS, EffectSwitches, Switch};
-use glossmith::document::{AreaLight, Document, MaterialSettings};
-use glossmith::job::Job;
-use glossmith::job::effect::EffectId;
-use glossmith::job::film::Film;
-use glossmith::optics::curve::Curve;
-use glossmith::render::{Assets, EngineChoice, Session};
-use glossmith::scene::ModelSource;
+use glossmith::{
+    document::{
+        AreaLight, Document, MaterialSettings,
+        effect::{EFFECTS, EffectSwitches, Switch},
+    },
+    job::{Job, effect::EffectId, film::Film},
+    optics::curve::Curve,
+    render::{Assets, EngineChoice, Session},
+    scene::ModelSource,
+};
 
-use crate::cli_support::Workplace;
-use crate::plan_kernels::assert_same_but_for_rounding;
-use crate::random_documents::{of_material, small};
+use crate::{
+    cli_support::Workplace,
+    plan_kernels::assert_same_but_for_rounding,
+    random_documents::{of_material, small},
+};
 
 type Edit = fn(&mut Document);
 

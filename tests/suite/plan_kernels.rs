@@ -1,38 +1,37 @@
 //! What kernels leave out shows nowhere: on the processor by taking it out of the job, on the GPU by its kernels.
 
-use std::collections::HashSet;
-use std::sync::Arc;
-use std::time::Duration;
+use std::{collections::HashSet, sync::Arc, time::Duration};
 
-use glossmith::cpu::CpuEngine;
-use glossmith::document::effect::EFFECTS;
-use glossmith::document::{AreaLight, Document, GroundKind};
-use glossmith::gpu::{AdapterKind, GpuDevice, GpuEngine};
-use glossmith::job::effect::{ANY, Decision};
-use glossmith::job::film::Film;
-use glossmith::job::plan::Plan;
-use glossmith::job::{Job, Settings};
-use glossmith::optics::material::{
-    COAT_ABSORBS, COAT_IS_GGX, COMPENSATES, FILM_BANDS, HAS_BOX, HAS_PROFILE, Material, NO_TEXTURE, OVER_AZIMUTH, SPARES_METAL,
-    VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY,
+use glossmith::{
+    cpu::CpuEngine,
+    document::{AreaLight, Document, GroundKind, effect::EFFECTS},
+    gpu::{AdapterKind, GpuDevice, GpuEngine},
+    job::{Job, Settings, effect::ANY, effect::Decision, film::Film, plan::Plan},
+    optics::material::{
+        COAT_ABSORBS, COAT_IS_GGX, COMPENSATES, FILM_BANDS, HAS_BOX, HAS_PROFILE, Material, NO_TEXTURE, OVER_AZIMUTH,
+        SPARES_METAL, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY,
+    },
+    optics::vector::Vec3,
+    render::EngineChoice,
+    render::Session,
+    scene::ModelSource,
+    scene::texture::TextureTarget as On,
+    store::PRESETS,
 };
-use glossmith::optics::vector::Vec3;
-use glossmith::render::{EngineChoice, Session};
-use glossmith::scene::ModelSource;
-use glossmith::scene::texture::TextureTarget as On;
-use glossmith::store::PRESETS;
 
-use crate::fuzz_layer::fuzzy_on_a_box;
-use crate::gltf_builder::Folder;
-use crate::gltf_meaning::shining_by_vertices;
-use crate::own_textures::coated_on_a_box;
-use crate::plan::job_in;
-use crate::random_documents::{apart, of_material, random_document, small};
-use crate::renders::set;
-use crate::support::Random;
-use crate::terminator::coarse;
-use crate::textures::{all_at_once, coated_all_over};
-use crate::thin_film::filmed_on_a_box;
+use crate::{
+    fuzz_layer::fuzzy_on_a_box,
+    gltf_builder::Folder,
+    gltf_meaning::shining_by_vertices,
+    own_textures::coated_on_a_box,
+    plan::job_in,
+    random_documents::{apart, of_material, random_document, small},
+    renders::set,
+    support::Random,
+    terminator::coarse,
+    textures::{all_at_once, coated_all_over},
+    thin_film::filmed_on_a_box,
+};
 
 /// Takes the textures off these targets.
 fn plain(material: &mut Material<f32>, targets: &[On]) {

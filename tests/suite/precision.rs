@@ -1,15 +1,15 @@
 //! The map of what in a picture's numbers is not to be trusted: lit where a scene is made to fail.
 
-use std::sync::Arc;
-use std::time::Duration;
+use std::{sync::Arc, time::Duration};
 
-use glossmith::cpu::CpuEngine;
-use glossmith::cpu::precision::precision;
-use glossmith::document::Document;
-use glossmith::job::Job;
-use glossmith::job::precision::{Fault, PrecisionMap};
-use glossmith::render::{EngineChoice, Session};
-use glossmith::scene::ModelSource;
+use glossmith::{
+    cpu::{CpuEngine, precision::precision},
+    document::Document,
+    job::Job,
+    job::precision::{Fault, PrecisionMap},
+    render::{EngineChoice, Session},
+    scene::ModelSource,
+};
 
 const SIZE: [u32; 2] = [40, 32];
 

@@ -1,11 +1,12 @@
 //! Documents with some of everything, in range: for the tests of plans, and for the benchmark that takes more of them.
 
-use glossmith::document::{
-    AreaLight, Denoise, Document, GroundKind, Kind, MaterialSettings, PARAMETERS, Parameter, Strategy, Value,
+use glossmith::{
+    document::{
+        AreaLight, Denoise, Document, GroundKind, Kind, MaterialSettings, PARAMETERS, Parameter, Strategy, Value,
+    },
+    scene::{ModelSource, environment::EnvironmentSource},
+    store::PRESETS,
 };
-use glossmith::scene::ModelSource;
-use glossmith::scene::environment::EnvironmentSource;
-use glossmith::store::PRESETS;
 
 use crate::support::Random;
 

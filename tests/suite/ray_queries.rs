@@ -1,18 +1,16 @@
 //! Ray queries: the same pictures as by our own traversal but for rounding, and the switch. Where the adapter has none, what
 //! stands in is seen to.
 
-use std::sync::Arc;
-use std::time::Duration;
+use std::{sync::Arc, time::Duration};
 
-use glossmith::document::{AreaLight, Document};
-use glossmith::gpu::{AdapterKind, GpuAdapter, GpuEngine, Traversal};
-use glossmith::job::Job;
-use glossmith::job::film::Film;
-use glossmith::render::{EngineChoice, Session};
+use glossmith::{
+    document::{AreaLight, Document},
+    gpu::{AdapterKind, GpuAdapter, GpuEngine, Traversal},
+    job::{Job, film::Film},
+    render::{EngineChoice, Session},
+};
 
-use super::cli_support::{Workplace, read_exr};
-use super::plan::job_in;
-use super::random_documents::apart;
+use super::{cli_support::Workplace, cli_support::read_exr, plan::job_in, random_documents::apart};
 
 /// The share of pixels that may be off by more than a thousandth, and how far the whole image may be: rays at edges meet
 /// the triangle on the other side, after which a path goes elsewhere. All other hits have the same numbers, as these are

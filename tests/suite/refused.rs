@@ -2,13 +2,14 @@
 
 use std::time::{Duration, Instant};
 
-use glossmith::document::Document;
-use glossmith::gpu::{AdapterKind, GpuDevice, GpuError};
-use glossmith::job::film::Image;
-use glossmith::render::{Assets, EngineChoice, EngineKind, Session, SessionError};
-use glossmith::scene::environment::{Environment, EnvironmentSource};
-use wgpu::BufferUsages;
-use wgpu::util::{BufferInitDescriptor, DeviceExt};
+use glossmith::{
+    document::Document,
+    gpu::{AdapterKind, GpuDevice, GpuError},
+    job::film::Image,
+    render::{Assets, EngineChoice, EngineKind, Session, SessionError},
+    scene::environment::{Environment, EnvironmentSource},
+};
+use wgpu::{BufferUsages, util::BufferInitDescriptor, util::DeviceExt};
 
 use super::worker::small_document;
 

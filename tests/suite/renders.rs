@@ -3,14 +3,14 @@
 use std::sync::{LazyLock, Mutex, PoisonError};
 use std::time::Duration;
 
-use glossmith::analysis::error::{Estimates, z_test};
-use glossmith::document::effect::EffectSwitches;
-use glossmith::document::{Document, MaterialSettings, PixelFilter, assign};
-use glossmith::job::film::Film;
-use glossmith::optics::random::Sequence;
-use glossmith::render::{Assets, EngineChoice, Session};
-use glossmith::scene::ModelSource;
-use glossmith::scene::environment::EnvironmentSource;
+use glossmith::{
+    analysis::error::{Estimates, z_test},
+    document::{Document, MaterialSettings, PixelFilter, assign, effect::EffectSwitches},
+    job::film::Film,
+    optics::random::Sequence,
+    render::{Assets, EngineChoice, Session},
+    scene::{ModelSource, environment::EnvironmentSource},
+};
 
 /// Makes assignments that blanks part.
 pub fn set(material: &mut MaterialSettings, assignments: &str) {

@@ -1,9 +1,11 @@
 //! The rough diffuse base: albedos and values in closed form, and light both ways.
 
-use glossmith::document::MaterialSettings;
-use glossmith::optics::rough_diffuse::single_albedo;
-use glossmith::render::{EngineChoice, Precision};
-use glossmith::study::evaluate::Evaluator;
+use glossmith::{
+    document::MaterialSettings,
+    optics::rough_diffuse::single_albedo,
+    render::{EngineChoice, Precision},
+    study::evaluate::Evaluator,
+};
 
 use crate::renders::material;
 

@@ -4,26 +4,30 @@
 
 use std::time::Duration;
 
-use glossmith::document::{AreaLight, Document, GroundKind, Strategy};
-use glossmith::job::film::Film;
-use glossmith::optics::random::Sequence;
-use glossmith::render::{Assets, EngineChoice, Precision, Session};
-use glossmith::scene::ModelSource;
-use glossmith::scene::environment::EnvironmentSource;
-use glossmith::study::evaluate::Evaluator;
+use glossmith::{
+    document::{AreaLight, Document, GroundKind, Strategy},
+    job::film::Film,
+    optics::random::Sequence,
+    render::{Assets, EngineChoice, Precision, Session},
+    scene::{ModelSource, environment::EnvironmentSource},
+    study::evaluate::Evaluator,
+};
 
-use crate::fuzz_layer::fuzzy_on_a_box;
-use crate::gltf_builder::Folder;
-use crate::gltf_meaning::shining_by_vertices;
-use crate::light_profiles::{LAMP, floor};
-use crate::lights::lit_scenes;
-use crate::own_textures::{coated_on_a_box, dressed};
-use crate::parting::Pair;
-use crate::paths::{self, Scene};
-use crate::renders::{document, material};
-use crate::terminator::coarse;
-use crate::textures::{all_at_once, coated_all_over};
-use crate::thin_film::filmed_on_a_box;
+use crate::{
+    fuzz_layer::fuzzy_on_a_box,
+    gltf_builder::Folder,
+    gltf_meaning::shining_by_vertices,
+    light_profiles::{LAMP, floor},
+    lights::lit_scenes,
+    own_textures::{coated_on_a_box, dressed},
+    parting::Pair,
+    paths,
+    paths::Scene,
+    renders::{document, material},
+    terminator::coarse,
+    textures::{all_at_once, coated_all_over},
+    thin_film::filmed_on_a_box,
+};
 
 const CLEAR: &str = "base.metalness=0 transmission.weight=1";
 /// Materials on the teapot under the studio, in which light is reflected often.

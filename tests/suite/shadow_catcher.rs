@@ -3,15 +3,18 @@
 
 use crate::renders::{assert_same_picture, document, render};
 use glam::DVec3;
-use glossmith::document::{AreaLight, Background, Document, GroundKind, MaterialSettings};
-use glossmith::job::film::Film;
-use glossmith::optics::random::Sequence;
-use glossmith::optics::vector::{Vec3, vec3};
-use glossmith::render::EngineChoice;
-use glossmith::scene::ModelSource;
-use glossmith::scene::catcher::{CatcherLight, NearLight, catcher_light, catcher_reflectance, catcher_table};
-use glossmith::scene::environment::EnvironmentSource;
-use glossmith::scene::{AreaShape, Outline};
+use glossmith::{
+    document::{AreaLight, Background, Document, GroundKind, MaterialSettings},
+    job::film::Film,
+    optics::random::Sequence,
+    optics::vector::{Vec3, vec3},
+    render::EngineChoice,
+    scene::{
+        AreaShape, ModelSource, Outline,
+        catcher::{CatcherLight, NearLight, catcher_light, catcher_reflectance, catcher_table},
+        environment::EnvironmentSource,
+    },
+};
 use std::f64::consts::PI;
 
 const ENGINES: [EngineChoice; 2] = [EngineChoice::Cpu, EngineChoice::Gpu];

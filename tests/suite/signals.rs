@@ -1,9 +1,11 @@
 //! A render that a signal ends: the picture so far is there, and said to be.
 #![cfg(unix)]
 
-use std::io::{BufRead as _, BufReader, Read as _};
-use std::os::unix::process::CommandExt as _;
-use std::process::{Child, Command, Stdio};
+use std::{
+    io::{BufRead as _, BufReader, Read as _},
+    os::unix::process::CommandExt as _,
+    process::{Child, Command, Stdio},
+};
 
 use super::cli_support::{Workplace, read_exr};
 

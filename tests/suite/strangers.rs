@@ -1,13 +1,9 @@
 //! Files from strangers: what they may name, and what becomes of what they may not.
 
-use glossmith::document::Document;
-use glossmith::scene::ModelSource;
-use glossmith::store::save_document;
+use glossmith::{document::Document, scene::ModelSource, store::save_document};
 use serde_json::{Value as Json, json};
 
-use super::cli_support::Workplace;
-use super::gltf_builder::{glb, png};
-use super::textures::textured_square;
+use super::{cli_support::Workplace, gltf_builder::glb, gltf_builder::png, textures::textured_square};
 
 const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl far\nf 1 2 3\n";
 const FAR: &[u8] = b"newmtl far\nKd 0.125 0.25 0.5\n";

@@ -1,48 +1,7 @@
-//! The order of the folders, read from the code's own paths: who may use whom (docs/ARCHITECTURE.md).
+//! The order of the folders within a package, read from the code's own paths (docs/ARCHITECTURE.md). Cargo keeps that of
+//! the packages.
 
-use std::collections::BTreeSet;
-use std::fs;
-use std::path::{Path, PathBuf};
-
-/// Each folder of `src/` with all others that it may use.
-const MAY_USE: &[(&str, &str)] = &[
-    ("named", ""),
-    ("instructions", "named"),
-    ("panics", ""),
-    ("parallel", ""),
-    ("console", "panics"),
-    ("optics", "parallel named instructions"),
-    ("scene", "parallel named panics instructions optics"),
-    ("import", "parallel panics optics scene"),
-    ("job", "parallel named optics scene"),
-    ("cpu", "parallel named panics instructions optics scene job"),
-    ("gpu", "parallel named panics optics scene job"),
-    ("analysis", "parallel named panics optics scene job"),
-    ("plot", "parallel named optics job analysis"),
-    ("document", "named panics optics scene import job"),
-    ("compile", "panics optics scene import job document"),
-    ("matching", "optics analysis plot document"),
-    (
-        "store",
-        "parallel named panics optics scene import analysis document compile matching",
-    ),
-    (
-        "render",
-        "parallel named panics optics scene job cpu gpu analysis plot document compile matching store import",
-    ),
-    (
-        "study",
-        "parallel named optics scene import job cpu gpu analysis plot document compile matching store render",
-    ),
-    (
-        "cli",
-        "named console instructions optics scene import job analysis plot document matching store render study",
-    ),
-    (
-        "app",
-        "named panics optics scene import job analysis plot document matching store render study",
-    ),
-];
+use std::{fs, path::Path, path::PathBuf};
 
 fn collect(ending: &str, folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in fs::read_dir(folder).unwrap() {
@@ -62,55 +21,36 @@ pub(crate) fn files_with(ending: &str, folder: &Path) -> Vec<PathBuf> {
     found
 }
 
-/// The folders that a file names by `crate::`, other than in comments.
-fn used(text: &str) -> BTreeSet<&str> {
-    let code = text.lines().filter(|line| !line.trim_start().starts_with("//"));
-    code.flat_map(|line| line.split("crate::").skip(1))
-        .map(|rest| {
-            rest.split(|c: char| !c.is_alphanumeric() && c != '_')
-                .next()
-                .unwrap_or("")
-        })
-        .filter(|name| MAY_USE.iter().any(|(folder, _)| folder == name))
-        .collect()
-}
-
 #[test]
-fn folders_use_only_what_is_below_them() {
+fn modules_use_only_those_declared_before_them() {
     let src = Path::new(crate::ROOT).join("src");
-    let mut wrong = Vec::new();
-    for (folder, allowed) in MAY_USE {
-        let files = match src.join(folder) {
-            path if path.is_dir() => files_with("rs", &path),
-            path => vec![path.with_extension("rs")],
-        };
-        assert!(
-            !files.is_empty(),
-            "src/{folder} is gone: bring the table here up to date"
-        );
-        for file in files {
-            let text = fs::read_to_string(&file).unwrap();
-            let beyond = used(&text)
-                .into_iter()
-                .filter(|name| name != folder && !allowed.split(' ').any(|other| other == *name));
-            wrong.extend(beyond.map(|name| format!("{} uses {name}", file.display())));
+    for package in ["engine", "files", "session"] {
+        let root = fs::read_to_string(src.join(package).with_extension("rs")).unwrap();
+        let modules: Vec<&str> = root
+            .lines()
+            .filter_map(|line| line.strip_prefix("pub mod ")?.strip_suffix(';'))
+            .collect();
+        assert!(modules.len() > 1, "{package}: {root}");
+        for (place, module) in modules.iter().enumerate() {
+            let files = match src.join(module) {
+                path if path.is_dir() => files_with("rs", &path),
+                path => vec![path.with_extension("rs")],
+            };
+            for file in files {
+                let text = fs::read_to_string(&file).unwrap();
+                for line in text.lines().filter(|line| !line.trim_start().starts_with("//")) {
+                    // From the package's root, or imported from there.
+                    let uses = |later: &str| {
+                        line.match_indices(&format!("{later}::")).any(|(at, _)| {
+                            let before = &line[..at];
+                            let is_path = before.ends_with(|c: char| c.is_alphanumeric() || "_:".contains(c));
+                            !is_path || before.ends_with("crate::")
+                        })
+                    };
+                    let later = modules[place + 1..].iter().find(|later| uses(later));
+                    assert_eq!(later, None, "{}: {line}", file.display());
+                }
+            }
         }
-    }
-    assert!(
-        wrong.is_empty(),
-        "against the order of docs/ARCHITECTURE.md:\n{}",
-        wrong.join("\n")
-    );
-}
-
-#[test]
-fn every_folder_has_its_place_in_the_order() {
-    let src = Path::new(crate::ROOT).join("src");
-    for entry in fs::read_dir(src).unwrap() {
-        let path = entry.unwrap().path();
-        let name = path.file_stem().unwrap().to_str().unwrap();
-        let is_known = MAY_USE.iter().any(|(folder, _)| *folder == name)
-            || ["lib", "main", "book_pages", "engine"].contains(&name);
-        assert!(is_known, "src/{name} has no place in the order of the folders");
     }
 }

@@ -1,15 +1,17 @@
 //! Studies: the race and the ledger, in numbers small enough for a test.
 
 use super::cli_support::Workplace;
-use glossmith::document::{Document, MaterialSettings};
-use glossmith::optics::fresnel::Fresnel;
-use glossmith::optics::lobe::Lobe;
-use glossmith::render::EngineChoice;
-use glossmith::scene::ModelSource;
-use glossmith::scene::environment::EnvironmentSource;
-use glossmith::study::StudyError;
-use glossmith::study::ledger::{LedgerOptions, ledger};
-use glossmith::study::race::{Race, RaceOptions, Runner, race};
+use glossmith::{
+    document::{Document, MaterialSettings},
+    optics::{fresnel::Fresnel, lobe::Lobe},
+    render::EngineChoice,
+    scene::{ModelSource, environment::EnvironmentSource},
+    study::{
+        StudyError,
+        ledger::{LedgerOptions, ledger},
+        race::{Race, RaceOptions, Runner, race},
+    },
+};
 use serde_json::Value;
 use std::time::Duration;
 

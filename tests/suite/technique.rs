@@ -1,10 +1,12 @@
 //! Techniques of a race: as text and back, and what they change.
 
-use glossmith::document::{Document, MaterialSettings, Strategy};
-use glossmith::job::plan::Plan;
-use glossmith::optics::fresnel::Fresnel;
-use glossmith::scene::texture::TextureTarget;
-use glossmith::study::technique::{GROUPS, Technique, converged};
+use glossmith::{
+    document::{Document, MaterialSettings, Strategy},
+    job::plan::Plan,
+    optics::fresnel::Fresnel,
+    scene::texture::TextureTarget,
+    study::technique::{GROUPS, Technique, converged},
+};
 
 #[test]
 fn every_technique_is_read_as_it_is_written() {

@@ -1,18 +1,19 @@
 //! Smooth normals on coarse triangles: what calls for the round surface, and that it neither loses nor makes light.
 
-use glossmith::document::effect::Switch;
-use glossmith::document::{AreaLight, Background, Document, MaterialSettings};
-use glossmith::job::effect::EffectId;
-use glossmith::render::EngineChoice;
-use glossmith::scene::environment::EnvironmentSource;
-use glossmith::scene::mesh::Mesh;
-use glossmith::scene::{ModelSource, shapes};
+use glossmith::{
+    document::{AreaLight, Background, Document, MaterialSettings, effect::Switch},
+    job::effect::EffectId,
+    render::EngineChoice,
+    scene::{ModelSource, environment::EnvironmentSource, mesh::Mesh, shapes},
+};
 use serde_json::json;
 
-use super::gltf_builder::{Buffer, Folder};
-use super::plan::job;
-use super::random_documents::of_material;
-use super::renders::{document, render};
+use super::{
+    gltf_builder::{Buffer, Folder},
+    plan::job,
+    random_documents::of_material,
+    renders::{document, render},
+};
 
 /// The file of a mesh with its normals.
 fn file(folder: &Folder, name: &str, mesh: &Mesh) -> ModelSource {

@@ -1,21 +1,24 @@
 //! Textures against analytic look-ups, on both engines.
 
-use glossmith::compile::compile_textured;
-use glossmith::document::{AreaLight, Background, Document, ImportLobe, MaterialSettings, PixelFilter};
-use glossmith::optics::random::Sequence;
-use glossmith::optics::tone::linear_from_srgb;
-use glossmith::optics::vector::Vec3;
-use glossmith::render::EngineChoice;
-use glossmith::scene::environment::EnvironmentSource;
-use glossmith::scene::texture::TextureTarget;
-use glossmith::scene::texture::{Textures, opacity_at, texture_lookup};
-use glossmith::scene::{Model, ModelSource};
+use glossmith::{
+    compile::compile_textured,
+    document::{AreaLight, Background, Document, ImportLobe, MaterialSettings, PixelFilter},
+    optics::{random::Sequence, tone::linear_from_srgb, vector::Vec3},
+    render::EngineChoice,
+    scene::{
+        Model, ModelSource,
+        environment::EnvironmentSource,
+        texture::{TextureTarget, Textures, opacity_at, texture_lookup},
+    },
+};
 use image::{Rgba, RgbaImage};
 use serde_json::{Value, json};
 
-use super::gltf_builder::{Buffer, Folder, glb, square};
-use super::gltf_extensions::load_plain;
-use super::renders::render;
+use super::{
+    gltf_builder::{Buffer, Folder, glb, square},
+    gltf_extensions::load_plain,
+    renders::render,
+};
 
 const ENGINES: [EngineChoice; 2] = [EngineChoice::Cpu, EngineChoice::Gpu];
 

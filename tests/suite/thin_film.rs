@@ -2,15 +2,18 @@
 
 use std::f64::consts::TAU;
 
-use glossmith::document::Document;
-use glossmith::optics::fresnel::{Fresnel, FresnelTerms, fresnel, fresnel_metal};
-use glossmith::optics::real::Scalar;
-use glossmith::optics::thin_film::{BAND_WIDTH, FilmTerms, UNBANDED_PHASE, WAVELENGTHS_NM, film_path, index_of_colors};
-use glossmith::optics::vector::{Vec3, vec3};
-use glossmith::scene::texture::TextureTarget;
+use glossmith::{
+    document::Document,
+    optics::{
+        fresnel::{Fresnel, FresnelTerms, fresnel, fresnel_metal},
+        real::Scalar,
+        thin_film::{BAND_WIDTH, FilmTerms, UNBANDED_PHASE, WAVELENGTHS_NM, film_path, index_of_colors},
+        vector::{Vec3, vec3},
+    },
+    scene::texture::TextureTarget,
+};
 
-use crate::gltf_builder::Folder;
-use crate::own_textures::coated_on_a_box;
+use crate::{gltf_builder::Folder, own_textures::coated_on_a_box};
 
 /// Fresnel terms without tints.
 fn terms<T: Scalar>(model: Fresnel, ior: f64, [eta, k]: [f64; 2], film: FilmTerms<T>) -> FresnelTerms<T> {
@@ -132,7 +135,10 @@ fn bands_are_means_over_wavelengths() {
                     (phase * (1.0 + width * (0.5 * TAU * part).tan())).abs()
                 };
                 let mean = (0..20_000).map(|step| of(film(at(step), false))).sum::<f64>() / 20_000.0;
-                assert!((found - mean).abs() < 1e-3, "{model:?}, {phase} at {cosine}: {found} for {mean}");
+                assert!(
+                    (found - mean).abs() < 1e-3,
+                    "{model:?}, {phase} at {cosine}: {found} for {mean}"
+                );
             }
         }
     }

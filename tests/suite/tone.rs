@@ -1,10 +1,12 @@
 //! Tone curves and sRGB's encoding.
 
-use glossmith::document::ViewSettings;
-use glossmith::job::film::Image;
-use glossmith::optics::tone::{ToneCurve, linear_from_srgb, srgb_from_linear, tone_map};
-use glossmith::optics::vector::{Vec3, vec3};
-use glossmith::render::display::display;
+use glossmith::{
+    document::ViewSettings,
+    job::film::Image,
+    optics::tone::{ToneCurve, linear_from_srgb, srgb_from_linear, tone_map},
+    optics::vector::{Vec3, vec3},
+    render::display::display,
+};
 
 fn mapped(curve: ToneCurve, rgb: [f64; 3]) -> [f64; 3] {
     tone_map(curve, Vec3::<f64>::from_f64(rgb)).to_f64()

@@ -1,10 +1,11 @@
 //! Glass: light cut at the last bounce, roulette behind clear panes, and glass that is not there.
 
-use glossmith::document::{Background, Document};
-use glossmith::job::film::Film;
-use glossmith::render::EngineChoice;
-use glossmith::scene::ModelSource;
-use glossmith::scene::environment::EnvironmentSource;
+use glossmith::{
+    document::{Background, Document},
+    job::film::Film,
+    render::EngineChoice,
+    scene::{ModelSource, environment::EnvironmentSource},
+};
 
 use super::renders::{document, render};
 

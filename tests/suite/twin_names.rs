@@ -1,9 +1,7 @@
 //! Functions of `shaders/optics` and `shaders/scene` have twins in Rust of the same names, so that who reads one finds the
 //! other (docs/ARCHITECTURE.md).
 
-use std::collections::BTreeSet;
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::{collections::BTreeSet, fs, path::Path, path::PathBuf};
 
 use crate::structure::files_with;
 

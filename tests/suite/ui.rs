@@ -1,28 +1,25 @@
 //! The editor as a person uses it, with the real renderer behind it, in few pixels.
 
-use std::collections::HashMap;
-use std::path::PathBuf;
-use std::time::{Duration, Instant};
+use std::{collections::HashMap, path::PathBuf, time::Duration, time::Instant};
 
-use egui::accesskit::{self, NodeId, Role};
-use egui::{Key, Modifiers, Pos2, Vec2};
-use egui_kittest::Harness;
-use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use glossmith::app::actions::{Action, Command};
-use glossmith::app::layout::Pane;
-use glossmith::app::workspaces::MEASURE;
-use glossmith::app::{App, Options, Resolution};
-use glossmith::document::Document;
-use glossmith::optics::lobe::Lobe;
-use glossmith::render::EngineChoice;
-use glossmith::scene::ModelSource;
-use glossmith::scene::environment::EnvironmentSource;
-use glossmith::store::{PRESETS, save_document, save_material};
+use egui::{Key, Modifiers, Pos2, Vec2, accesskit, accesskit::NodeId, accesskit::Role};
+use egui_kittest::{Harness, kittest::NodeT as _, kittest::Queryable as _};
+use glossmith::{
+    app::{App, Options, Resolution, actions::Action, actions::Command, layout::Pane, workspaces::MEASURE},
+    document::Document,
+    optics::lobe::Lobe,
+    render::EngineChoice,
+    scene::ModelSource,
+    scene::environment::EnvironmentSource,
+    store::{PRESETS, save_document, save_material},
+};
 
-use super::manual::manual_pages;
-use super::ui_files::wait_for_words;
-use super::ui_hands::{Hands as _, press, type_path};
-use super::worker::small_document;
+use super::{
+    manual::manual_pages,
+    ui_files::wait_for_words,
+    ui_hands::{Hands as _, press, type_path},
+    worker::small_document,
+};
 
 /// The window without a screen.
 pub(super) type Editor = Harness<'static, App>;

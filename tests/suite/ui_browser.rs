@@ -5,15 +5,18 @@ use std::path::Path;
 use eframe::App as _;
 use egui::accesskit::Role;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use glossmith::app::Options;
-use glossmith::app::actions::{Action, Command};
-use glossmith::scene::environment::EnvironmentSource;
-use glossmith::store::examples::still_life;
-use glossmith::store::{PRESETS, save_material};
+use glossmith::{
+    app::Options,
+    app::actions::{Action, Command},
+    scene::environment::EnvironmentSource,
+    store::{PRESETS, examples::still_life, save_material},
+};
 
-use super::cli_support::write_hdr;
-use super::ui::{Editor, Memory, editor_of, editor_remembering, options, request, see, settle, undo, wait};
-use super::ui_hands::{Hands as _, type_path};
+use super::{
+    cli_support::write_hdr,
+    ui::{Editor, Memory, editor_of, editor_remembering, options, request, see, settle, undo, wait},
+    ui_hands::{Hands as _, type_path},
+};
 
 fn has(harness: &Editor, label: &str) -> bool {
     harness.query_by_role_and_label(Role::Button, label).is_some()

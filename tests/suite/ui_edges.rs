@@ -1,9 +1,7 @@
 //! Rough edges of the window: endings of saved projects, hard cases that stop.
 
 use egui_kittest::kittest::Queryable as _;
-use glossmith::app::Options;
-use glossmith::app::actions::Command;
-use glossmith::app::layout::Pane;
+use glossmith::app::{Options, actions::Command, layout::Pane};
 
 use super::ui::{Editor, editor, editor_of, options, see_label, settle, wait};
 use super::ui_hands::{Hands as _, type_path};

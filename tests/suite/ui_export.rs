@@ -4,9 +4,11 @@ use crate::ui::{Editor, editor, request, see_label, wait};
 use crate::ui_hands::{Hands as _, type_path};
 use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable as _;
-use glossmith::app::actions::{Action, Command};
-use glossmith::store::PRESETS;
-use glossmith::store::preset::{load_material, material_text};
+use glossmith::{
+    app::actions::{Action, Command},
+    store::PRESETS,
+    store::preset::{load_material, material_text},
+};
 
 /// Chooses *Export…* and types a path.
 fn ask_for(harness: &mut Editor, path: &std::path::Path) {

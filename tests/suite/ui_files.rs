@@ -1,22 +1,23 @@
 //! Files that are dropped on the window and pasted into it, opening that is called off, and files that other programs save.
 
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::{path::Path, path::PathBuf, sync::Arc};
 
 use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable as _;
-use glossmith::app::actions::Action;
-use glossmith::scene::ModelSource;
-use glossmith::scene::environment::EnvironmentSource;
-use glossmith::scene::texture::TextureTarget;
-use glossmith::store::{save_document, save_material};
+use glossmith::{
+    app::actions::Action,
+    scene::{ModelSource, environment::EnvironmentSource, texture::TextureTarget},
+    store::{save_document, save_material},
+};
 use serde_json::json;
 
-use super::cli_support::write_hdr;
-use super::gltf_builder::{Folder, glb, png, square};
-use super::ui::{Editor, editor, editor_with, picture, request, see, see_label, settle, undo, wait};
-use super::ui_hands::Hands as _;
-use super::worker::small_document;
+use super::{
+    cli_support::write_hdr,
+    gltf_builder::{Folder, glb, png, square},
+    ui::{Editor, editor, editor_with, picture, request, see, see_label, settle, undo, wait},
+    ui_hands::Hands as _,
+    worker::small_document,
+};
 
 #[derive(Debug)]
 struct Dropped(PathBuf);

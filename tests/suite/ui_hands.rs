@@ -2,12 +2,13 @@
 
 use std::path::Path;
 
-use egui::accesskit::Role;
-use egui::{Event, Modifiers, PointerButton, Rect};
+use egui::{Event, Modifiers, PointerButton, Rect, accesskit::Role};
 use egui_kittest::kittest::Queryable as _;
-use glossmith::app::actions::{Action, Command};
-use glossmith::app::layout::Pane;
-use glossmith::document::Document;
+use glossmith::{
+    app::actions::{Action, Command},
+    app::layout::Pane,
+    document::Document,
+};
 
 use super::ui::{Editor, request, see};
 

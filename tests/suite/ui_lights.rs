@@ -1,14 +1,15 @@
 //! Lights moved in the viewport, and the environment in its preview, as a person does it.
 
-use egui::accesskit::Role;
-use egui::{Event, Key, Modifiers, Pos2, Vec2};
+use egui::{Event, Key, Modifiers, Pos2, Vec2, accesskit::Role};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use glossmith::app::layout::Pane;
 use glossmith::document::{AreaLight, AreaLightShape, Document};
 
-use super::ui::{Editor, drag, editor_with, settle, undo};
-use super::ui_hands::Hands as _;
-use super::worker::small_document;
+use super::{
+    ui::{Editor, drag, editor_with, settle, undo},
+    ui_hands::Hands as _,
+    worker::small_document,
+};
 
 /// Lights in view of the camera, and the window with their list.
 fn editor_lit_by(lights: &[AreaLight]) -> Editor {

@@ -1,16 +1,18 @@
 //! Looking closer: the inspector, maps over the picture, and the picture's own pixels.
 
-use egui::accesskit::Role;
-use egui::{Event, Key, Modifiers, Pos2, Vec2};
+use egui::{Event, Key, Modifiers, Pos2, Vec2, accesskit::Role};
 use egui_kittest::kittest::Queryable as _;
-use glossmith::app::actions::{Action, Command};
-use glossmith::app::layout::Pane;
-use glossmith::render::shown::Shown;
-use glossmith::render::worker::Picture;
+use glossmith::{
+    app::actions::{Action, Command},
+    app::layout::Pane,
+    render::{shown::Shown, worker::Picture},
+};
 
-use super::ui::{Editor, editor_with, picture, request, see, settle, wait};
-use super::ui_hands::Hands as _;
-use super::worker::small_document;
+use super::{
+    ui::{Editor, editor_with, picture, request, see, settle, wait},
+    ui_hands::Hands as _,
+    worker::small_document,
+};
 
 /// Where the picture is in the viewport, which it fits.
 fn place(harness: &Editor) -> egui::Rect {

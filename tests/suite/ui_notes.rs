@@ -4,14 +4,13 @@ use std::path::Path;
 
 use egui::accesskit::Role;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use glossmith::app::Options;
-use glossmith::app::actions::{Action, Command};
-use glossmith::app::library::Change;
-use glossmith::app::workspaces::LOOK;
+use glossmith::app::{Options, actions::Action, actions::Command, library::Change, workspaces::LOOK};
 
-use super::ui::{Editor, editor_of, options, request, see, see_label, settle};
-use super::ui_hands::{Hands as _, press, type_path};
-use super::worker::small_document;
+use super::{
+    ui::{Editor, editor_of, options, request, see, see_label, settle},
+    ui_hands::{Hands as _, press, type_path},
+    worker::small_document,
+};
 
 /// A window of so many samples whose own files are in `folder`.
 fn editor(folder: &Path, samples: u32) -> Editor {

@@ -1,19 +1,22 @@
 //! The tree of the scene: objects and materials chosen, hidden, renamed and edited together.
 
-use egui::accesskit::Role;
-use egui::{Event, Key, Modifiers, PointerButton, Pos2};
+use egui::{Event, Key, Modifiers, PointerButton, Pos2, accesskit::Role};
 use egui_kittest::kittest::Queryable as _;
-use glossmith::app::actions::{Action, Command};
-use glossmith::app::layout::Pane;
-use glossmith::document::{CameraSettings, Document};
-use glossmith::render::{EngineChoice, Session};
-use glossmith::scene::ModelSource;
-use glossmith::store::{PRESETS, load_document, save_document};
+use glossmith::{
+    app::actions::{Action, Command},
+    app::layout::Pane,
+    document::{CameraSettings, Document},
+    render::{EngineChoice, Session},
+    scene::ModelSource,
+    store::{PRESETS, load_document, save_document},
+};
 
-use super::gltf_builder::Folder;
-use super::ui::{Editor, editor_with, picture, request, settle, undo};
-use super::ui_hands::{Hands as _, press};
-use super::worker::small_document;
+use super::{
+    gltf_builder::Folder,
+    ui::{Editor, editor_with, picture, request, settle, undo},
+    ui_hands::{Hands as _, press},
+    worker::small_document,
+};
 
 /// Two squares side by side, facing the camera, each an object with a material of its own.
 fn two_squares(folder: &Folder) -> Document {

@@ -1,28 +1,24 @@
 //! Textures, the lobe of opened models, the list of environments and the palette's parameters, in the
 //! editor with the real renderer.
 
-use egui::accesskit::Role;
-use egui::{Key, Modifiers};
+use egui::{Key, Modifiers, accesskit::Role};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use glossmith::app::Options;
-use glossmith::app::actions::{Action, Command};
-use glossmith::app::layout::Pane;
-use glossmith::document::{AreaLight, Document, GroundKind, range};
-use glossmith::optics::curve::{Curve, curve_density};
-use glossmith::optics::lobe::Lobe;
-use glossmith::scene::ModelSource;
-use glossmith::scene::environment::EnvironmentSource;
-use glossmith::scene::texture::TextureTarget;
+use glossmith::{
+    app::{Options, actions::Action, actions::Command, layout::Pane},
+    document::{AreaLight, Document, GroundKind, range},
+    optics::{curve::Curve, curve::curve_density, lobe::Lobe},
+    scene::{ModelSource, environment::EnvironmentSource, texture::TextureTarget},
+};
 use serde_json::json;
 
-use super::cli_support::write_hdr;
-use super::gltf_builder::{Folder, glb};
-use super::textures::{four_texels, textured_square};
-use super::ui::{
-    Editor, editor, editor_of, editor_with, options, picture, request, see, see_label, settle, undo, wait,
+use super::{
+    cli_support::write_hdr,
+    gltf_builder::{Folder, glb},
+    textures::{four_texels, textured_square},
+    ui::{Editor, editor, editor_of, editor_with, options, picture, request, see, see_label, settle, undo, wait},
+    ui_hands::Hands as _,
+    worker::small_document,
 };
-use super::ui_hands::Hands as _;
-use super::worker::small_document;
 
 /// A file with a square whose colour and roughness are pictures.
 fn textured_file(folder: &Folder) -> std::path::PathBuf {

@@ -4,16 +4,17 @@
 use std::path::Path;
 
 use egui::{Rect, Vec2};
-use egui_kittest::kittest::Queryable as _;
-use egui_kittest::{Harness, SnapshotOptions, image_snapshot_options};
-use glossmith::app::actions::Command;
-use glossmith::app::layout::Pane;
-use glossmith::app::{App, Options};
-use glossmith::document::Document;
+use egui_kittest::{Harness, SnapshotOptions, image_snapshot_options, kittest::Queryable as _};
+use glossmith::{
+    app::{App, Options, actions::Command, layout::Pane},
+    document::Document,
+};
 
-use super::ui::{options, see_label, settle, wait};
-use super::ui_hands::Hands as _;
-use super::ui_study::race_strategies;
+use super::{
+    ui::{options, see_label, settle, wait},
+    ui_hands::Hands as _,
+    ui_study::race_strategies,
+};
 
 /// Drivers rasterise edges and blend text a little differently.
 const COLOR_TOLERANCE: f32 = 2.0;

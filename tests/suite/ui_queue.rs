@@ -2,15 +2,15 @@
 
 use std::path::Path;
 
-use egui::accesskit::Role;
-use egui::{Key, Modifiers, ViewportCommand, ViewportEvent, ViewportId};
+use egui::{Key, Modifiers, ViewportCommand, ViewportEvent, ViewportId, accesskit::Role};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use glossmith::app::actions::{Action, Command};
-use glossmith::app::layout::Pane;
+use glossmith::app::{actions::Action, actions::Command, layout::Pane};
 
-use super::ui::{Editor, editor, request, see, settle};
-use super::ui_files::{says, wait_for_words};
-use super::ui_hands::{Hands as _, press, type_path};
+use super::{
+    ui::{Editor, editor, request, see, settle},
+    ui_files::{says, wait_for_words},
+    ui_hands::{Hands as _, press, type_path},
+};
 
 fn set(harness: &mut Editor, label: &str, value: f64) {
     let field = harness.get_by_role_and_label(Role::SpinButton, label);

@@ -1,17 +1,19 @@
 //! Effects, depth of field and picking, in the editor with the real renderer.
 
-use egui::accesskit::Role;
-use egui::{Modifiers, Pos2, Vec2};
+use egui::{Modifiers, Pos2, Vec2, accesskit::Role};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use glossmith::app::layout::Pane;
-use glossmith::document::AreaLight;
-use glossmith::document::effect::Switch;
-use glossmith::job::effect::EffectId;
-use glossmith::scene::ModelSource;
+use glossmith::{
+    app::layout::Pane,
+    document::{AreaLight, effect::Switch},
+    job::effect::EffectId,
+    scene::ModelSource,
+};
 
-use super::ui::{Editor, editor, editor_of, options, picture, see_label, settle, undo};
-use super::ui_hands::Hands as _;
-use super::worker::small_document;
+use super::{
+    ui::{Editor, editor, editor_of, options, picture, see_label, settle, undo},
+    ui_hands::Hands as _,
+    worker::small_document,
+};
 
 pub(super) fn choose(harness: &mut Editor, menu: &str, item: &str) {
     harness.tap(Role::ComboBox, menu);

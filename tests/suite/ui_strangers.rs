@@ -3,16 +3,15 @@
 use std::path::PathBuf;
 
 use egui_kittest::kittest::Queryable as _;
-use glossmith::app::actions::Action;
-use glossmith::document::Document;
-use glossmith::scene::ModelSource;
-use glossmith::store::save_document;
+use glossmith::{app::actions::Action, document::Document, scene::ModelSource, store::save_document};
 use serde_json::Value as Json;
 
-use super::gltf_builder::Folder;
-use super::ui::{Editor, editor, request, see_label, wait};
-use super::ui_files::says;
-use super::ui_hands::{Hands as _, press};
+use super::{
+    gltf_builder::Folder,
+    ui::{Editor, editor, request, see_label, wait},
+    ui_files::says,
+    ui_hands::{Hands as _, press},
+};
 
 const QUESTION: &str = "Read files from elsewhere?";
 const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";

@@ -2,14 +2,13 @@
 
 use egui::accesskit::Role;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use glossmith::app::actions::Command;
-use glossmith::app::layout::Pane;
-use glossmith::document::{Document, Strategy};
-use glossmith::scene::ModelSource;
+use glossmith::{app::actions::Command, app::layout::Pane, document::Document, document::Strategy, scene::ModelSource};
 
-use super::ui::{Editor, editor_of, options, see, see_label, settle, undo, wait};
-use super::ui_hands::Hands as _;
-use super::worker::small_document;
+use super::{
+    ui::{Editor, editor_of, options, see, see_label, settle, undo, wait},
+    ui_hands::Hands as _,
+    worker::small_document,
+};
 
 fn sphere() -> Document {
     Document {

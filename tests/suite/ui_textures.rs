@@ -4,18 +4,21 @@ use std::path::{Path, PathBuf};
 
 use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable as _;
-use glossmith::app::Options;
-use glossmith::document::Document;
-use glossmith::scene::ModelSource;
-use glossmith::scene::texture::set::{recognised, targets_of};
-use glossmith::scene::texture::{TextureTarget, UserTexture};
+use glossmith::{
+    app::Options,
+    document::Document,
+    scene::ModelSource,
+    scene::texture::{TextureTarget, UserTexture, set::recognised, set::targets_of},
+};
 use image::{Rgba, RgbaImage};
 
-use super::gltf_builder::Folder;
-use super::ui::{Editor, editor_of, editor_with, options, picture, see_label, settle, undo, wait};
-use super::ui_files::{drop_on, says};
-use super::ui_hands::Hands as _;
-use super::worker::small_document;
+use super::{
+    gltf_builder::Folder,
+    ui::{Editor, editor_of, editor_with, options, picture, see_label, settle, undo, wait},
+    ui_files::{drop_on, says},
+    ui_hands::Hands as _,
+    worker::small_document,
+};
 
 /// The editor on a sphere, with paths typed into a field.
 fn on_a_sphere(folder: &Folder) -> Editor {

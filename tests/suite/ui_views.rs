@@ -1,16 +1,18 @@
 //! Views: parallel views from the sides, lights that are hidden, a reference under, over and beside the render.
 
-use egui::Key;
-use egui::accesskit::Role;
+use egui::{Key, accesskit::Role};
 use egui_kittest::kittest::Queryable as _;
-use glossmith::app::Options;
-use glossmith::app::layout::Pane;
-use glossmith::document::{AreaLight, CameraSettings};
-use glossmith::scene::camera::Projection;
+use glossmith::{
+    app::{Options, layout::Pane},
+    document::{AreaLight, CameraSettings},
+    scene::camera::Projection,
+};
 
-use super::ui::{Editor, editor, editor_of, editor_with, options, picture, see, settle, undo};
-use super::ui_hands::{Hands as _, type_path};
-use super::worker::small_document;
+use super::{
+    ui::{Editor, editor, editor_of, editor_with, options, picture, see, settle, undo},
+    ui_hands::{Hands as _, type_path},
+    worker::small_document,
+};
 
 fn camera(harness: &Editor) -> CameraSettings {
     harness.document().camera

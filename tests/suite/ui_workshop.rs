@@ -6,11 +6,11 @@ use super::ui_hands::Hands as _;
 use eframe::App as _;
 use egui::accesskit::{Role, Toggled};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use glossmith::app::actions::Command;
-use glossmith::app::layout::Pane;
-use glossmith::app::{App, Options};
-use glossmith::render::{EngineChoice, EngineKind};
-use glossmith::store::examples::EXAMPLES;
+use glossmith::{
+    app::{App, Options, actions::Command, layout::Pane},
+    render::{EngineChoice, EngineKind},
+    store::examples::EXAMPLES,
+};
 
 #[test]
 fn the_engine_chosen_in_the_menu_is_remembered() {

@@ -2,14 +2,17 @@
 
 use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable as _;
-use glossmith::app::actions::{Action, Command};
-use glossmith::app::layout::Pane;
-use glossmith::app::workspaces::{Change, LOOK, MEASURE};
-use glossmith::app::{Options, Resolution};
-use glossmith::render::EngineChoice;
-use glossmith::scene::ModelSource;
-use glossmith::store::examples::still_life;
-use glossmith::store::{PRESETS, load_document, save_document};
+use glossmith::{
+    app::{
+        Options, Resolution,
+        actions::{Action, Command},
+        layout::Pane,
+        workspaces::{Change, LOOK, MEASURE},
+    },
+    render::EngineChoice,
+    scene::ModelSource,
+    store::{PRESETS, examples::still_life, load_document, save_document},
+};
 
 use super::ui::{Editor, Memory, editor_of, editor_remembering, options, request, settle, undo, wait};
 use super::ui_hands::Hands as _;

@@ -3,10 +3,8 @@
 use std::path::Path;
 
 use glossmith::store::video::Video;
-use openh264::decoder::Decoder;
-use openh264::formats::YUVSource as _;
-use shiguredo_mp4::boxes::SampleEntry;
-use shiguredo_mp4::demux::{Input, Mp4FileDemuxer};
+use openh264::{decoder::Decoder, formats::YUVSource as _};
+use shiguredo_mp4::{boxes::SampleEntry, demux::Input, demux::Mp4FileDemuxer};
 
 const SIZE: [u32; 2] = [48, 33];
 

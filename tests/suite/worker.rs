@@ -1,12 +1,13 @@
 //! The renderer's thread: what is submitted is shown, failures leave what was there.
 
-use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::{sync::Arc, time::Duration, time::Instant};
 
-use glossmith::document::Document;
-use glossmith::render::EngineChoice;
-use glossmith::render::worker::{Activity, Event, Level, Pace, Picture, Snapshot, Worker};
-use glossmith::scene::{ModelOptions, ModelSource};
+use glossmith::{
+    document::Document,
+    render::EngineChoice,
+    render::worker::{Activity, Event, Level, Pace, Picture, Snapshot, Worker},
+    scene::{ModelOptions, ModelSource},
+};
 
 const PATIENCE: Duration = Duration::from_secs(600);
 

@@ -5,9 +5,7 @@
 
 use std::sync::LazyLock;
 
-use crate::analysis::quadrature::gauss_legendre;
-use crate::optics::lobe::model::NORMAL;
-use crate::optics::vector::Vec3;
+use crate::{analysis::quadrature::gauss_legendre, optics::lobe::model::NORMAL, optics::vector::Vec3};
 
 /// The rule within a panel.
 static GAUSS_8: LazyLock<Vec<[f64; 2]>> = LazyLock::new(|| gauss_legendre(8));

@@ -4,13 +4,13 @@
 
 use std::f64::consts::FRAC_1_PI;
 
-use super::basis::Hats;
-use super::non_negative::non_negative;
-use crate::analysis::sphere_grid::{Profile, Side, SphereGrid};
-use crate::optics::lobe::Horizon;
-use crate::optics::lobe::model::{NORMAL, view_direction};
-use crate::optics::vector::Vec3;
-use crate::parallel;
+use super::{basis::Hats, non_negative::non_negative};
+use crate::{
+    analysis::sphere_grid::{Profile, Side, SphereGrid},
+    optics::lobe::{Horizon, model::NORMAL, model::view_direction},
+    optics::vector::Vec3,
+    parallel,
+};
 
 /// Hat functions of h.
 const HATS: usize = 22;

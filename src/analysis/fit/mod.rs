@@ -14,8 +14,7 @@ pub use merl::{Merl, MerlError};
 pub use roughness::{Nearest, nearest_roughness};
 
 use super::sphere_grid::{Profile, Side, SphereGrid};
-use crate::optics::lobe::model::{LobeModel, view_direction};
-use crate::optics::vector::Vec3;
+use crate::optics::{lobe::model::LobeModel, lobe::model::view_direction, vector::Vec3};
 
 /// Function of a lobe to compare.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

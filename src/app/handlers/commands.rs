@@ -2,38 +2,33 @@
 
 use std::time::Instant;
 
-use crate::app::actions::{Action, Command};
-use crate::app::desk::PICTURE_SIZE;
-use crate::app::handlers::pictures::Destination;
-use crate::app::kit::keys;
-use crate::app::layout::{self, Pane};
-use crate::app::services::{
-    library,
-    shelves::{environment_key, environment_label, preset_key},
-    viewing::Resolution,
+use crate::{
+    App,
+    actions::{Action, Command},
+    desk::PICTURE_SIZE,
+    document::{CameraSettings, Denoise, Document, History, MaterialSettings, PARAMETERS, parameter, setting},
+    handlers::pictures::Destination,
+    is_dragging,
+    kit::keys,
+    layout,
+    layout::Pane,
+    scene::{
+        ModelOptions,
+        camera::{Projection, framing_distance},
+        environment::{BUILT_IN, EnvironmentSource},
+        path_text::file_name,
+    },
+    services::{
+        library,
+        shelves::{environment_key, environment_label, preset_key},
+        viewing::Resolution,
+    },
+    sheets::{book, dialogs::Purpose, menu::Sheet, palette, palette::Findable, turntable::Preview, unsaved::Then},
+    store::PRESETS,
+    store::examples::{EXAMPLES, Example},
+    study::explain::explain,
+    workspaces::Change,
 };
-use crate::app::sheets::{
-    book,
-    dialogs::Purpose,
-    menu::Sheet,
-    palette::{self, Findable},
-    turntable::Preview,
-    unsaved::Then,
-};
-use crate::app::workspaces::Change;
-use crate::app::{App, is_dragging};
-use crate::document::{CameraSettings, Denoise, Document, History, MaterialSettings, PARAMETERS, parameter, setting};
-use crate::scene::{
-    ModelOptions,
-    camera::{Projection, framing_distance},
-    environment::{BUILT_IN, EnvironmentSource},
-    path_text::file_name,
-};
-use crate::store::{
-    PRESETS,
-    examples::{EXAMPLES, Example},
-};
-use crate::study::explain::explain;
 
 /// How many times larger one step of magnification shows the image.
 const MAGNIFICATION: f32 = 2.0;

@@ -2,33 +2,28 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::app::handlers::pictures::Destination;
-use crate::app::services::{
-    disk::{self, Disk},
-    edits::Edits,
-    messages::Entry,
-    watched::Watched,
-};
-use crate::app::sheets::{dialogs::Purpose, question, unsaved::Then};
-use crate::app::{App, new_document};
-use crate::document::{AreaLightShape, Document, MaterialSettings, ProfileFile, Reference};
-use crate::import::{
-    endings::{self, ending},
-    holds_model, light_profile, limits,
-};
-use crate::render::{output::format_of, queue::Task};
-use crate::scene::{
-    environment::EnvironmentSource,
-    path_text::file_name,
-    texture::{TextureTarget, UserTexture, set},
-};
-use crate::store::{
-    FileError, Loaded,
-    exchange::{self, ExchangeError, ReadOptions},
-    file_kind::{FileKind, may_hold_document, what_is_opened},
-    lut,
-    opened::Opened,
-    preset, save_document, save_material,
+use crate::{
+    App,
+    document::{AreaLightShape, Document, MaterialSettings, ProfileFile, Reference},
+    handlers::pictures::Destination,
+    import::{endings, endings::ending, holds_model, light_profile, limits},
+    new_document,
+    render::{output::format_of, queue::Task},
+    scene::{
+        environment::EnvironmentSource,
+        path_text::file_name,
+        texture::{TextureTarget, UserTexture, set},
+    },
+    services::{disk, disk::Disk, edits::Edits, messages::Entry, watched::Watched},
+    sheets::{dialogs::Purpose, question, unsaved::Then},
+    store::{
+        FileError, Loaded,
+        exchange::{self, ExchangeError, ReadOptions},
+        file_kind::{FileKind, may_hold_document, what_is_opened},
+        lut,
+        opened::Opened,
+        preset, save_document, save_material,
+    },
 };
 
 /// What the names of projects end with before .json: by it desktops know them from other files.

@@ -4,17 +4,15 @@ use std::path::{Path, PathBuf};
 
 use image::RgbaImage;
 
-use crate::app::App;
-use crate::app::handlers::files::finish;
-use crate::app::layout::Pane;
-use crate::app::services::{disk::Task, library::Change, messages::Entry, pictures::uploaded};
-use crate::document::Document;
-use crate::render::display::display;
-use crate::render::worker::{Activity, Picture};
-use crate::store::{
-    FileError,
-    library::{self, Removed},
-    snapshots,
+use crate::{
+    App,
+    document::Document,
+    handlers::files::finish,
+    layout::Pane,
+    render::display::display,
+    render::worker::{Activity, Picture},
+    services::{disk::Task, library::Change, messages::Entry, pictures::uploaded},
+    store::{FileError, library, library::Removed, snapshots},
 };
 
 /// Samples per pixel from which an image is clean at the size of a snapshot's.

@@ -1,23 +1,22 @@
 //! Models that were loaded, with what was dropped or pasted beside them, and what was edited of them.
 
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::{path::Path, path::PathBuf, sync::Arc};
 
-use crate::app::App;
-use crate::app::actions::{Action, Command};
-use crate::app::handlers::files::{kind, textures_in};
-use crate::document::GroundKind;
-use crate::document::of_model::{lights_left_out, materials_of};
-use crate::import::{environment, is_model};
-use crate::scene::{
-    Model, ModelOptions, ModelSource,
-    environment::EnvironmentSource,
-    path_text::{file_name, path_of_text},
-    texture::{UserTexture, set},
-};
-use crate::store::{
-    examples::still_life,
-    file_kind::{FileKind, may_hold_document},
+use crate::{
+    App,
+    actions::{Action, Command},
+    document::GroundKind,
+    document::of_model::{lights_left_out, materials_of},
+    handlers::files::{kind, textures_in},
+    import::{environment, is_model},
+    scene::{
+        Model, ModelOptions, ModelSource,
+        environment::EnvironmentSource,
+        path_text::{file_name, path_of_text},
+        texture::{UserTexture, set},
+    },
+    store::examples::still_life,
+    store::file_kind::{FileKind, may_hold_document},
 };
 
 /// What was dropped on the window in this frame and, where text may be taken, pasted.

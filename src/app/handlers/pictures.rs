@@ -1,26 +1,21 @@
 //! The image, the window and materials as files or on the clipboard.
 
-use std::path::PathBuf;
-use std::sync::Arc;
-use std::sync::mpsc::channel;
-use std::time::Duration;
+use std::{path::PathBuf, sync::Arc, sync::mpsc::channel, time::Duration};
 
 use egui::ColorImage;
 
-use crate::app::App;
-use crate::app::handlers::files::finish;
-use crate::app::services::{disk::Task, export::ready, messages::Entry};
-use crate::app::sheets::{dialogs::Purpose, export::Answer};
-use crate::document::MaterialSettings;
-use crate::render::{
-    Progress,
-    output::{self, Layers},
-    worker::Activity,
-};
-use crate::store::{
-    exchange::{self, Registered, Subject, report::Outcome},
-    picture::png_bytes,
-    replace::save_atomically,
+use crate::{
+    App,
+    document::MaterialSettings,
+    handlers::files::finish,
+    render::{Progress, output, output::Layers, worker::Activity},
+    services::{disk::Task, export::ready, messages::Entry},
+    sheets::{dialogs::Purpose, export::Answer},
+    store::{
+        exchange::{self, Registered, Subject, report::Outcome},
+        picture::png_bytes,
+        replace::save_atomically,
+    },
 };
 
 /// How long an image of the window may take to come.

@@ -1,16 +1,16 @@
 //! Handing the renderers what has been edited: that of the viewport, and that of B.
 
-use std::sync::Arc;
-use std::time::Instant;
+use std::{sync::Arc, time::Instant};
 
-use crate::app::services::{
-    compare::{BEFORE, Renderer, Rival},
-    viewing::Resolution,
+use crate::{
+    App, MOVING,
+    document::{Change, Document},
+    is_dragging,
+    optics::lobe::Lobe,
+    render::worker::{Activity, Event, Level, Pace, Picture, Snapshot, Worker},
+    services::compare::{BEFORE, Renderer, Rival},
+    services::viewing::Resolution,
 };
-use crate::app::{App, MOVING, is_dragging};
-use crate::document::{Change, Document};
-use crate::optics::lobe::Lobe;
-use crate::render::worker::{Activity, Event, Level, Pace, Picture, Snapshot, Worker};
 
 impl App {
     /// Records the frame's edit and hands the renderer what differs from what it has.

@@ -1,24 +1,26 @@
 //! What lies over the window: questions before edits or renders are lost, what a crash left, turntables, the manual.
 
-use std::path::Path;
-use std::time::Duration;
+use std::{path::Path, time::Duration};
 
 use egui::{Context, Order, Pos2, ViewportCommand};
 
-use crate::app::App;
-use crate::app::book::{CONTENTS, EXPLAIN, EXPORT, KEYS, MODEL_FILE, TURNTABLE, UNSAVED};
-use crate::app::kit::{theme, widgets};
-use crate::app::layout::{self, Pane};
-use crate::app::services::{autosave::Leftover, viewing::Resolution};
-use crate::app::sheets::{
-    self, answers, book,
-    menu::Sheet,
-    recovery::{Choice, name, sheet},
-    turntable::{Preview, SIZE},
-    unsaved::{Answer, Question, Then},
+use crate::{
+    App,
+    book::{CONTENTS, EXPLAIN, EXPORT, KEYS, MODEL_FILE, TURNTABLE, UNSAVED},
+    document::{Document, turntable::turned_by},
+    kit::{theme, widgets},
+    layout,
+    layout::Pane,
+    render::{EngineChoice, queue::Task},
+    services::{autosave::Leftover, viewing::Resolution},
+    sheets::{
+        self, answers, book,
+        menu::Sheet,
+        recovery::{Choice, name, sheet},
+        turntable::{Preview, SIZE},
+        unsaved::{Answer, Question, Then},
+    },
 };
-use crate::document::{Document, turntable::turned_by};
-use crate::render::{EngineChoice, queue::Task};
 
 /// How long a turn takes in the viewport.
 const PREVIEW_TURN: Duration = Duration::from_secs(12);

@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 use egui::*;
 use egui_plot::{AxisHints, GridInput, GridMark, Line, Plot, PlotPoint, PlotTransform};
 
-use crate::app::kit::words::{duration, percent_short};
+use crate::kit::words::{duration, percent_short};
 pub(crate) use crate::plot::number as short;
 
 /// The share of an axis at either end in which there are no labels: half of a label's height in a small chart.

@@ -2,8 +2,7 @@
 
 use egui::*;
 
-use super::theme::ROW_HEIGHT;
-use super::widgets::show_focus;
+use super::{theme::ROW_HEIGHT, widgets::show_focus};
 
 /// What is drawn.
 pub enum Icon {

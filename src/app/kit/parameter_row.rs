@@ -2,10 +2,10 @@
 
 use egui::*;
 
-use crate::app::kit::theme::ROW_HEIGHT;
-use crate::app::kit::widgets::{self, Name, NumberStyle};
-use crate::document::parameter::{Precision, RowStyle};
-use crate::document::{Kind, Parameter, Value};
+use crate::{
+    document::{Kind, Parameter, Value, parameter::Precision, parameter::RowStyle},
+    kit::{theme::ROW_HEIGHT, widgets, widgets::Name, widgets::NumberStyle},
+};
 
 /// Whether a parameter can be edited in a row; what depends on the scene has controls of its own.
 pub fn has_row<T>(parameter: &Parameter<T>) -> bool {

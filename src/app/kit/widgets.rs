@@ -2,15 +2,19 @@
 
 use std::ops::RangeInclusive;
 
-use egui::emath::Numeric;
-use egui::text::LayoutJob;
 use egui::*;
+use egui::{emath::Numeric, text::LayoutJob};
 
-use crate::app::kit::keys::{fulfil_request, hold_arrows, note_requested, requested};
-use crate::app::kit::theme::{self, ROW_HEIGHT};
-use crate::named::Named;
-use crate::optics::tone::{linear_from_srgb, srgb_from_linear};
-use crate::optics::vector::vec3;
+use crate::{
+    kit::{
+        keys::{fulfil_request, hold_arrows, note_requested, requested},
+        theme,
+        theme::ROW_HEIGHT,
+    },
+    named::Named,
+    optics::tone::{linear_from_srgb, srgb_from_linear},
+    optics::vector::vec3,
+};
 
 /// The share of a row that its label takes.
 const LABEL_SHARE: f32 = 0.40;

@@ -3,11 +3,13 @@
 use egui_plot::{HLine, LineStyle, Points};
 
 use super::*;
-use crate::analysis::noise::Noise;
-use crate::app::kit::charts::{height, line, log_log};
-use crate::app::kit::words::{duration, error, percent, percent_short};
-use crate::document::RenderSettings;
-use crate::render::{Measurement, Progress};
+use crate::{
+    analysis::noise::Noise,
+    document::RenderSettings,
+    kit::charts::{height, line, log_log},
+    kit::words::{duration, error, percent, percent_short},
+    render::{Measurement, Progress},
+};
 
 /// The errors that are aimed at where the document names none.
 const STEPS: [f64; 10] = [0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001, 0.0005];

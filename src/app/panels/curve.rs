@@ -3,10 +3,12 @@
 use egui_plot::{Plot, PlotUi, Points};
 
 use super::*;
-use crate::app::kit::charts::{height, line, nearest, rounded_up, short, still};
-use crate::app::kit::widgets::Name;
-use crate::document::custom_curve::{CustomCurve, DISTANCE_MAX, DISTANCE_MIN, POINTS_MAX, XI_STEP_MIN};
-use crate::optics::curve::{Curve, curve_density, curve_distance, curve_distance_max};
+use crate::{
+    document::custom_curve::{CustomCurve, DISTANCE_MAX, DISTANCE_MIN, POINTS_MAX, XI_STEP_MIN},
+    kit::charts::{height, line, nearest, rounded_up, short, still},
+    kit::widgets::Name,
+    optics::curve::{Curve, curve_density, curve_distance, curve_distance_max},
+};
 
 /// Steps of a drawn line.
 const STEPS: usize = 240;

@@ -1,4 +1,4 @@
-//! The panels, one a file, listed in [`crate::app::pane`]. A panel keeps its state to itself: it sees the desk and no
+//! The panels, one a file, listed in [`crate::pane`]. A panel keeps its state to itself: it sees the desk and no
 //! other panel.
 
 // What most panels use: they take it all.
@@ -6,12 +6,12 @@ use std::sync::Arc;
 
 use egui::*;
 
-use super::actions::{Action, Command};
-use super::desk::Desk;
-use super::kit::icons::{self, Icon};
-use super::kit::theme;
-use super::kit::widgets::{self, NumberStyle};
-use super::pane::Pane;
+use super::{
+    actions::{Action, Command},
+    desk::Desk,
+    kit::{icons, icons::Icon, theme, widgets, widgets::NumberStyle},
+    pane::Pane,
+};
 
 /// A panel: what it remembers, and how it is drawn.
 pub trait Panel {
@@ -37,7 +37,7 @@ macro_rules! panels {
     };
 }
 
-crate::app::pane::list!(panels);
+crate::pane::list!(panels);
 
 /// The panels with what they remember.
 pub struct Panels(Vec<(Pane, Box<dyn Panel>)>);

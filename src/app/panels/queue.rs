@@ -1,7 +1,7 @@
 //! Renders that go on beside the window: what waits, how far it is, and what came of it.
 
 use super::*;
-use crate::app::kit::words::time_left;
+use crate::kit::words::time_left;
 use crate::render::queue::{Entry, State};
 
 /// The renders beside the window.

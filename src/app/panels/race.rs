@@ -5,16 +5,19 @@ use std::time::Duration;
 use egui_plot::{PlotPoint, PlotResponse, Points, Text};
 
 use super::*;
-use crate::app::kit::charts::{height, line, log_log, nearest};
-use crate::app::kit::tile::pixels;
-use crate::app::kit::words::{about, duration, percent};
-use crate::app::study::{StudyWorker, engine, small_document};
-use crate::document::ViewSettings;
-use crate::job::film::Image;
-use crate::job::plan::Plan;
-use crate::render::display::display;
-use crate::study::race::{Race, RaceOptions, Runner, race};
-use crate::study::technique::{GROUPS, Technique};
+use crate::{
+    document::ViewSettings,
+    job::{film::Image, plan::Plan},
+    kit::{
+        charts::{height, line, log_log, nearest},
+        tile::pixels,
+        words::{about, duration, percent},
+    },
+    measuring::{StudyWorker, engine, small_document},
+    render::display::display,
+    study::race::{Race, RaceOptions, Runner, race},
+    study::technique::{GROUPS, Technique},
+};
 
 /// Longest side of the raced image, pixels.
 const SIDE_MAX: u32 = 160;
@@ -67,18 +70,20 @@ impl Panel for RacePanel {
             let most = seconds_at_most(&techniques(&chosen, &scene.job.plan), seconds);
             format!("takes at most {}", about(most))
         });
-        state.worker.controls(ui, desk, ("Run the race", help, true), takes, |desk| {
-            let document = small_document(desk, SIDE_MAX);
-            let scene = desk.snapshot.scene.as_ref();
-            let plan = scene.map_or_else(Plan::general, |scene| scene.job.plan.clone());
-            let options = RaceOptions {
-                seconds,
-                slice: Duration::from_secs_f64((seconds / 20.0).clamp(0.005, 0.25)),
-                reference_seconds: REFERENCE_TIMES * seconds,
-                ..RaceOptions::new(engine(desk), techniques(&chosen, &plan))
-            };
-            Box::new(move |watch| race(&document, &options, watch))
-        });
+        state
+            .worker
+            .controls(ui, desk, ("Run the race", help, true), takes, |desk| {
+                let document = small_document(desk, SIDE_MAX);
+                let scene = desk.snapshot.scene.as_ref();
+                let plan = scene.map_or_else(Plan::general, |scene| scene.job.plan.clone());
+                let options = RaceOptions {
+                    seconds,
+                    slice: Duration::from_secs_f64((seconds / 20.0).clamp(0.005, 0.25)),
+                    reference_seconds: REFERENCE_TIMES * seconds,
+                    ..RaceOptions::new(engine(desk), techniques(&chosen, &plan))
+                };
+                Box::new(move |watch| race(&document, &options, watch))
+            });
         match state.worker.found() {
             None => widgets::note(
                 ui,

@@ -3,17 +3,18 @@
 use egui_plot::{Bar, BarChart, Legend};
 
 use super::*;
-use crate::app::kit::charts::{height, line, short, still};
-use crate::app::kit::words::short_number;
-use crate::app::services::beside::Beside;
-use crate::job::scatter::ScatterRequest;
-use crate::matching::lobe_of_material;
-use crate::named::named;
-use crate::optics::lobe::Horizon;
-use crate::optics::lobe::model::LobeModel;
-use crate::optics::vector::Vec3;
-use crate::render::EngineChoice;
-use crate::render::samples::{SampleAnswer, SampleQuery, SampleReport, answers};
+use crate::{
+    job::scatter::ScatterRequest,
+    kit::charts::{height, line, short, still},
+    kit::words::short_number,
+    matching::lobe_of_material,
+    named::named,
+    optics::lobe::{Horizon, model::LobeModel},
+    optics::vector::Vec3,
+    render::EngineChoice,
+    render::samples::{SampleAnswer, SampleQuery, SampleReport, answers},
+    services::beside::Beside,
+};
 
 /// The plot of angles goes on beyond its ends by this share, so that its labels stay within it.
 const ANGLE_MARGIN: f64 = 0.07;

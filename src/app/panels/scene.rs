@@ -1,8 +1,7 @@
 //! The objects of the model, and the ground: shown or hidden, chosen, renamed.
 
 use super::*;
-use crate::app::kit::keys;
-use crate::app::services::selection::Thing;
+use crate::{kit::keys, services::selection::Thing};
 
 /// The list.
 #[derive(Default)]
@@ -48,44 +47,44 @@ impl ScenePanel {
             }
             return;
         }
-    let is_hidden = desk.document.hidden_objects.contains(&number);
-    ui.horizontal(|ui| {
-        if let Some(verb) = eye(ui, name, is_hidden) {
-            let hidden = &mut desk.document.hidden_objects;
-            if is_hidden {
-                hidden.retain(|other| *other != number);
-            } else {
-                hidden.push(number);
-                hidden.sort_unstable();
+        let is_hidden = desk.document.hidden_objects.contains(&number);
+        ui.horizontal(|ui| {
+            if let Some(verb) = eye(ui, name, is_hidden) {
+                let hidden = &mut desk.document.hidden_objects;
+                if is_hidden {
+                    hidden.retain(|other| *other != number);
+                } else {
+                    hidden.push(number);
+                    hidden.sort_unstable();
+                }
+                desk.edits.did(format!("{verb} {name}"));
             }
-            desk.edits.did(format!("{verb} {name}"));
-        }
-        let is_chosen = desk.shared.selection.objects.contains(&number);
-        let shown = line(ui, name, is_chosen, is_hidden);
-        desk.light_up(ui, &shown, Thing::Object(number));
-        if shown.clicked() {
-            choose(desk, number, widgets::is_beside_others(ui));
-        }
-        shown.context_menu(|ui| {
-            if widgets::entry(ui, "Rename", "") {
-                self.renaming = Some((number, name.to_owned()));
+            let is_chosen = desk.shared.selection.objects.contains(&number);
+            let shown = line(ui, name, is_chosen, is_hidden);
+            desk.light_up(ui, &shown, Thing::Object(number));
+            if shown.clicked() {
+                choose(desk, number, widgets::is_beside_others(ui));
             }
-            if widgets::entry(ui, "Isolate", "Hides all other objects") {
-                desk.document.hidden_objects = (0..count).filter(|other| *other != number).collect();
-                desk.edits.did(format!("Isolate {name}"));
-            }
-            if widgets::entry(ui, "Focus", Command::FrameSelected.help()) {
-                choose(desk, number, false);
-                desk.act(Command::FrameSelected);
-            }
-            let is_any_hidden = !desk.document.hidden_objects.is_empty();
-            if widgets::pressed_if(ui, is_any_hidden, Command::ShowObjects.label(), "", "") {
-                desk.act(Command::ShowObjects);
-                ui.close();
-            }
+            shown.context_menu(|ui| {
+                if widgets::entry(ui, "Rename", "") {
+                    self.renaming = Some((number, name.to_owned()));
+                }
+                if widgets::entry(ui, "Isolate", "Hides all other objects") {
+                    desk.document.hidden_objects = (0..count).filter(|other| *other != number).collect();
+                    desk.edits.did(format!("Isolate {name}"));
+                }
+                if widgets::entry(ui, "Focus", Command::FrameSelected.help()) {
+                    choose(desk, number, false);
+                    desk.act(Command::FrameSelected);
+                }
+                let is_any_hidden = !desk.document.hidden_objects.is_empty();
+                if widgets::pressed_if(ui, is_any_hidden, Command::ShowObjects.label(), "", "") {
+                    desk.act(Command::ShowObjects);
+                    ui.close();
+                }
+            });
         });
-    });
-}
+    }
 }
 
 /// Chooses an object, and with it the material that it shows.

@@ -1,9 +1,7 @@
 //! Pinned states as thumbnails: to bring back, to compare with, to remove.
 
 use super::*;
-use crate::app::kit::tile::{self, Tile};
-use crate::app::services::compare::Rival;
-use crate::app::services::library::Change;
+use crate::{kit::tile, kit::tile::Tile, services::compare::Rival, services::library::Change};
 
 /// Width and height of an image's place, points.
 const PLACE: Vec2 = vec2(104.0, 66.0);

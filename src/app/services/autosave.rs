@@ -1,15 +1,17 @@
 //! Unsaved edits are saved for recovery every few seconds, on a thread of their own, and offered again after a crash.
 
-use std::path::{Path, PathBuf};
-use std::sync::mpsc::{Receiver, Sender, channel};
-use std::thread::JoinHandle;
-use std::time::{Duration, Instant};
+use std::{
+    path::{Path, PathBuf},
+    sync::mpsc::{Receiver, Sender, channel},
+    thread::JoinHandle,
+    time::{Duration, Instant},
+};
 
-use crate::app::services::crash::Witness;
-use crate::document::Document;
-use crate::store::{
-    FileError,
-    recovery::{self, Recovered, RecoveryFile},
+use crate::{
+    document::Document,
+    services::crash::Witness,
+    store::FileError,
+    store::recovery::{self, Recovered, RecoveryFile},
 };
 
 /// Shortest time between two copies of a document that keeps changing.

@@ -3,15 +3,15 @@
 
 use std::sync::Arc;
 
-use crate::analysis::difference::difference;
-use crate::app::services::beside::Beside;
-use crate::document::{Change, Document, MaterialSettings};
-use crate::matching::{lobe_of_material, matched_lobe};
-use crate::named::named;
-use crate::optics::lobe::{Lobe, model::LobeModel};
-use crate::render::{
-    EngineKind,
-    worker::{Picture, Snapshot, Worker},
+use crate::{
+    analysis::difference::difference,
+    document::{Change, Document, MaterialSettings},
+    matching::{lobe_of_material, matched_lobe},
+    named::named,
+    optics::lobe::{Lobe, model::LobeModel},
+    render::EngineKind,
+    render::worker::{Picture, Snapshot, Worker},
+    services::beside::Beside,
 };
 
 #[derive(Clone, Debug, PartialEq)]

@@ -3,17 +3,16 @@
 //! Every window has a witness that knows its document as the last frame left it, and what was done before. A hook writes
 //! both when any thread panics, before the thread unwinds: the next start offers them.
 
-use std::collections::VecDeque;
-use std::fs::OpenOptions;
-use std::io::Write as _;
-use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, MutexGuard, TryLockError, Weak};
-use std::thread::ThreadId;
+use std::{
+    collections::VecDeque,
+    fs::OpenOptions,
+    io::Write as _,
+    path::{Path, PathBuf},
+    sync::{Arc, Mutex, MutexGuard, TryLockError, Weak},
+    thread::ThreadId,
+};
 
-use crate::document::Document;
-use crate::panics;
-use crate::panics::lock;
-use crate::store::{FileError, recovery};
+use crate::{document::Document, panics, panics::lock, store::FileError, store::recovery};
 
 /// Most actions that a report lists.
 const ACTIONS: usize = 40;

@@ -1,7 +1,6 @@
 //! What was edited in a frame, and its way into the history: a drag is one step.
 
-use std::borrow::Cow;
-use std::time::{Duration, Instant};
+use std::{borrow::Cow, time::Duration, time::Instant};
 
 use crate::document::{Document, MaterialSettings, history::History};
 

@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use egui::TextureHandle;
 
-use crate::document::Document;
-use crate::store::{
-    library::{Entry, Removed},
-    snapshots::Pinned,
+use crate::{
+    document::Document,
+    store::library::{Entry, Removed},
+    store::snapshots::Pinned,
 };
 
 /// What can be done with the files of a folder of the user's.

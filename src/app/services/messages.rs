@@ -1,7 +1,6 @@
 //! What was said to the user: for the log, and over the viewport until it is old or closed.
 
-use std::path::{Path, PathBuf};
-use std::time::Instant;
+use std::{path::Path, path::PathBuf, time::Instant};
 
 use crate::render::worker::Level;
 use crate::scene::{Fate, ImportReport, path_text::file_name};

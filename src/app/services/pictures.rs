@@ -1,17 +1,21 @@
 //! The thumbnails of materials and environments that the window shows.
 
-use std::collections::HashMap;
-use std::path::PathBuf;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::{
+    collections::HashMap,
+    path::PathBuf,
+    sync::Arc,
+    sync::atomic::{AtomicBool, Ordering},
+};
 
 use egui::{ColorImage, TextureHandle, TextureOptions};
 use image::RgbaImage;
 
-use crate::app::services::beside::Beside;
-use crate::document::MaterialSettings;
-use crate::render::thumbnails::{Subject, Thumbnail, Thumbnails, Wanted, makes};
-use crate::scene::environment::{Environment, EnvironmentSource};
+use crate::{
+    document::MaterialSettings,
+    render::thumbnails::{Subject, Thumbnail, Thumbnails, Wanted, makes},
+    scene::environment::{Environment, EnvironmentSource},
+    services::beside::Beside,
+};
 
 /// What shows thumbnails: the first come first.
 #[derive(Clone, Copy)]

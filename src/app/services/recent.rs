@@ -1,13 +1,11 @@
 //! The files opened and saved last.
 
-use std::collections::HashSet;
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::{collections::HashSet, path::Path, path::PathBuf, sync::Arc};
 
-use crate::app::services::beside::Beside;
-use crate::import::endings::is_picture;
-use crate::scene::environment::EnvironmentSource;
-use crate::store::file_kind::may_hold_document;
+use crate::{
+    import::endings::is_picture, scene::environment::EnvironmentSource, services::beside::Beside,
+    store::file_kind::may_hold_document,
+};
 
 /// Most that are remembered.
 const COUNT: usize = 12;

@@ -1,13 +1,10 @@
 //! The reference image, read beside the window.
 
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::{path::Path, path::PathBuf, sync::Arc};
 
 use egui::{Color32, ColorImage, TextureHandle, TextureOptions};
 
-use crate::app::services::beside::Beside;
-use crate::import::{Budget, picture::read_texture};
-use crate::scene::Texture;
+use crate::{import::Budget, import::picture::read_texture, scene::Texture, services::beside::Beside};
 
 /// Longest side to which it is reduced, pixels.
 const SIDE_MAX: u32 = 4096;

@@ -2,8 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::document::MaterialSettings;
-use crate::scene::{ModelSource, texture::TextureTarget};
+use crate::{document::MaterialSettings, scene::ModelSource, scene::texture::TextureTarget};
 
 /// A part of the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -1,19 +1,16 @@
 //! What the browser of materials and environments keeps: favourites, the size of its images, the folders that it
 //! watches and what lies in them.
 
-use std::collections::BTreeSet;
-use std::path::PathBuf;
-use std::sync::Arc;
-use std::time::Duration;
+use std::{collections::BTreeSet, path::PathBuf, sync::Arc, time::Duration};
 
 use serde::{Deserialize, Serialize};
 
-use crate::app::services::beside::Beside;
-use crate::document::MaterialSettings;
-use crate::scene::{environment::EnvironmentSource, path_text::file_name};
-use crate::store::{
-    preset::command_line_name,
-    shelf::{Contents, Shelf},
+use crate::{
+    document::MaterialSettings,
+    scene::{environment::EnvironmentSource, path_text::file_name},
+    services::beside::Beside,
+    store::preset::command_line_name,
+    store::shelf::{Contents, Shelf},
 };
 
 /// From one look into the watched folders to the next, while they are seen.

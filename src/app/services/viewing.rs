@@ -1,7 +1,6 @@
 //! What renders the viewport, how it shows that, and what a click in it is for.
 
-use crate::named::named;
-use crate::render::{EngineChoice, shown::Shown};
+use crate::{named::named, render::EngineChoice, render::shown::Shown};
 
 /// How the viewport shows the render.
 #[derive(Clone, Debug, Default)]

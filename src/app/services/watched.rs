@@ -1,11 +1,9 @@
 //! Files that other programs may save while they are shown. They are looked at now and then: that works on every disk, and
 //! for programs that replace a file as well as for those that write into it.
 
-use std::collections::HashMap;
-use std::path::{Path, PathBuf};
-use std::time::{Duration, SystemTime};
+use std::{collections::HashMap, path::Path, path::PathBuf, time::Duration, time::SystemTime};
 
-use crate::app::services::beside::Beside;
+use crate::services::beside::Beside;
 
 /// From one look to the next. A file counts as saved when it was the same at two looks.
 const INTERVAL: Duration = Duration::from_millis(500);

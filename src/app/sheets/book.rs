@@ -1,9 +1,9 @@
-//! The manual: pages of the [`book`](crate::app::book) in a window beside the panels, so that one can follow a tutorial.
+//! The manual: pages of the [`book`](crate::book) in a window beside the panels, so that one can follow a tutorial.
 
 use egui_commonmark::{CommonMarkCache, CommonMarkViewer};
 
 use super::*;
-use crate::app::book::{self, CONTENTS, Pages, SCHEME, Section};
+use crate::book::{self, CONTENTS, Pages, SCHEME, Section};
 
 /// Size of the window at first, points.
 const SIZE: [f32; 2] = [480.0, 560.0];

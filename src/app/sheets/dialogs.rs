@@ -1,17 +1,21 @@
 //! Choosing files: the system's dialog on a thread of its own, or a sheet to type a path into: where there is no dialog,
 //! where one does not answer, and where it was asked for.
 
-use std::path::{MAIN_SEPARATOR, Path};
-use std::pin::Pin;
-use std::sync::mpsc::{Receiver, TryRecvError, channel};
-use std::time::{Duration, Instant};
+use std::{
+    path::{MAIN_SEPARATOR, Path},
+    pin::Pin,
+    sync::mpsc::{Receiver, TryRecvError, channel},
+    time::{Duration, Instant},
+};
 
 use super::*;
-use crate::app::sheets::question;
-use crate::render::output::FORMATS;
-use crate::scene::texture::TextureTarget;
-use crate::store::exchange;
-use crate::store::file_kind::{FileKind, OPENED, PICTURE_KINDS, endings};
+use crate::{
+    render::output::FORMATS,
+    scene::texture::TextureTarget,
+    sheets::question,
+    store::exchange,
+    store::file_kind::{FileKind, OPENED, PICTURE_KINDS, endings},
+};
 
 /// A dialog that returns empty-handed sooner than this never opened: no user cancels that fast.
 const NO_DIALOG: Duration = Duration::from_millis(400);

@@ -1,13 +1,17 @@
 //! The sheet that shows what another program's file loses, before it is written.
 
 use super::*;
-use crate::app::book::EXPORT;
-use crate::app::kit::tile::rgb_pixels;
-use crate::app::services::export::Ready;
-use crate::app::sheets::{answers, book, question, scrolled};
-use crate::render::looks::Compared;
-use crate::store::exchange::report::{MaterialReport, Outcome};
-use crate::store::exchange::{self, FORMATS, Prepared};
+use crate::{
+    book::EXPORT,
+    kit::tile::rgb_pixels,
+    render::looks::Compared,
+    services::export::Ready,
+    sheets::{answers, book, question, scrolled},
+    store::exchange::{
+        self, FORMATS, Prepared,
+        report::{MaterialReport, Outcome},
+    },
+};
 
 /// Points that the side of an image takes.
 const PICTURE: f32 = 176.0;

@@ -1,11 +1,12 @@
 //! The sheet about the model's file: which of its images is shown, and what became of its parts.
 
 use super::*;
-use crate::app::book::MODEL_FILE;
-use crate::app::sheets::{book, scrolled};
-use crate::document::ImportLobe;
-use crate::document::of_model::import_report;
-use crate::scene::{Fate, ImportReport, Model, ModelOptions};
+use crate::{
+    book::MODEL_FILE,
+    document::{ImportLobe, of_model::import_report},
+    scene::{Fate, ImportReport, Model, ModelOptions},
+    sheets::{book, scrolled},
+};
 
 /// Shows the sheet of a model. What is chosen is asked for as an action; true where the sheet is done with.
 pub fn show(

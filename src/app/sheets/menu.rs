@@ -1,17 +1,16 @@
 //! The menu bar and the sheets of help: both read the table of commands.
 
 use super::*;
-use crate::app::actions::{Command, Menu, do_and_close};
-use crate::app::pane::Pane;
-use crate::app::services::edits::Edits;
-use crate::app::services::recent::Recent;
-use crate::app::sheets::palette::{self, Findable};
-use crate::app::sheets::{import, question, scrolled, workspaces};
-use crate::document::{ImportLobe, MaterialSettings};
-use crate::render::EngineChoice;
-use crate::scene::Model;
-use crate::scene::path_text::file_name;
-use crate::store::examples::EXAMPLES;
+use crate::{
+    actions::{Command, Menu, do_and_close},
+    document::{ImportLobe, MaterialSettings},
+    pane::Pane,
+    render::EngineChoice,
+    scene::{Model, path_text::file_name},
+    services::{edits::Edits, recent::Recent},
+    sheets::{import, palette, palette::Findable, question, scrolled, workspaces},
+    store::examples::EXAMPLES,
+};
 
 /// What is open over the window.
 #[derive(Default, PartialEq)]

@@ -17,8 +17,7 @@ use std::path::PathBuf;
 
 use egui::*;
 
-use super::actions::Action;
-use super::kit::{theme, widgets};
+use super::{actions::Action, kit::theme, kit::widgets};
 use crate::document::Document;
 
 /// A sheet over the window, and its answer; closed without one, it is `cancelled`.

@@ -1,7 +1,7 @@
 //! The question whether a file from elsewhere may have others read that lie outside of its surroundings.
 
 use super::*;
-use crate::app::sheets::answers;
+use crate::sheets::answers;
 
 /// Most names that are shown.
 const SHOWN: usize = 8;

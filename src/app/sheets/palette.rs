@@ -1,10 +1,12 @@
 //! The command palette: every command, panel and parameter by a few letters, without the mouse.
 
 use super::*;
-use crate::app::actions::Command;
-use crate::app::kit::parameter_row;
-use crate::app::pane::Pane;
-use crate::document::{MaterialSettings, PARAMETERS, Parameter, SETTINGS};
+use crate::{
+    actions::Command,
+    document::{MaterialSettings, PARAMETERS, Parameter, SETTINGS},
+    kit::parameter_row,
+    pane::Pane,
+};
 
 /// Something to be found.
 #[derive(Clone, PartialEq)]

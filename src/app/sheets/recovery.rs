@@ -3,9 +3,11 @@
 use std::time::{Duration, SystemTime};
 
 use super::*;
-use crate::app::services::autosave::Leftover;
-use crate::app::sheets::scrolled;
-use crate::store::recovery::{Recovered, Report};
+use crate::{
+    services::autosave::Leftover,
+    sheets::scrolled,
+    store::recovery::{Recovered, Report},
+};
 
 /// What is to be done with a leftover.
 pub enum Choice {

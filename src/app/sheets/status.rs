@@ -4,9 +4,10 @@
 use std::time::Duration;
 
 use super::*;
-use crate::app::kit::words::{error, percent, short_number, time_left};
-use crate::render::worker::{Activity, Snapshot};
-use crate::render::{Progress, beyond_bounces};
+use crate::{
+    kit::words::{error, percent, short_number, time_left},
+    render::{Progress, beyond_bounces, worker::Activity, worker::Snapshot},
+};
 
 /// How often the loading message is refreshed.
 const LOADING_REPAINT: Duration = Duration::from_millis(200);

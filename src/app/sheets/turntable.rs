@@ -1,16 +1,16 @@
 //! The turntable: what turns, how often it is taken, and where it goes; the queue renders it.
 
-use std::path::Path;
-use std::time::Instant;
+use std::{path::Path, time::Instant};
 
 use super::*;
-use crate::app::kit::words::duration;
-use crate::document::turntable::Turn;
-use crate::document::{CameraSettings, Denoise};
-use crate::named::named;
-use crate::render::Progress;
-use crate::render::turntable::{FPS, Turntable};
-use crate::store::video;
+use crate::{
+    document::{CameraSettings, Denoise, turntable::Turn},
+    kit::words::duration,
+    named::named,
+    render::Progress,
+    render::turntable::{FPS, Turntable},
+    store::video,
+};
 
 /// Frames at first: four seconds.
 const FRAMES: u32 = 96;

@@ -3,8 +3,8 @@
 use egui::containers::menu::{MenuButton, MenuConfig};
 
 use super::*;
-use crate::app::actions::do_and_close;
-use crate::app::services::workspaces::{Change, LOOK, MEASURE, is_built_in};
+use crate::actions::do_and_close;
+use crate::services::workspaces::{Change, LOOK, MEASURE, is_built_in};
 
 /// Width of the field of a name, points.
 const NAME_WIDTH: f32 = 160.0;

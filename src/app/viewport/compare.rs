@@ -4,13 +4,14 @@ use std::time::Duration;
 
 use super::header::in_bar;
 use super::*;
-use crate::analysis::difference::diverging;
-use crate::app::kit::drag::steps;
-use crate::app::kit::widgets::NumberStyle;
-use crate::app::pane::Pane;
-use crate::app::services::compare::{BEFORE, Rival};
-use crate::app::services::viewing::Pick;
-use crate::optics::lobe::Lobe;
+use crate::{
+    analysis::difference::diverging,
+    kit::{drag::steps, widgets::NumberStyle},
+    optics::lobe::Lobe,
+    pane::Pane,
+    services::compare::{BEFORE, Rival},
+    services::viewing::Pick,
+};
 
 /// Half the width in which the divider can be taken hold of, points.
 const GRIP: f32 = 5.0;

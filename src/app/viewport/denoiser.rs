@@ -1,10 +1,12 @@
 //! A way to the denoiser where it is missing: why the image is noisy at first, and a button that fetches it.
 
 use super::*;
-use crate::app::services::beside::Beside;
-use crate::document::Denoise;
-use crate::render::denoise::Library;
-use crate::render::denoise::fetch::{DOWNLOAD, can_fetch, fetch};
+use crate::{
+    document::Denoise,
+    render::denoise::Library,
+    render::denoise::fetch::{DOWNLOAD, can_fetch, fetch},
+    services::beside::Beside,
+};
 
 /// Width of the offer, points.
 const WIDTH: f32 = 250.0;

@@ -1,12 +1,14 @@
 //! The bar over the image: what is looked at, in which light, and how it is shown.
 
 use super::*;
-use crate::app::actions::do_and_close;
-use crate::app::desk::lights;
-use crate::app::services::shelves::environment_label;
-use crate::document::{Denoise, LightPaths};
-use crate::render::shown::Shown;
-use crate::scene::ModelSource;
+use crate::{
+    actions::do_and_close,
+    desk::lights,
+    document::{Denoise, LightPaths},
+    render::shown::Shown,
+    scene::ModelSource,
+    services::shelves::environment_label,
+};
 
 /// What stands in the bar beside model and environment: what it keeps longest when it gets narrow first.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

@@ -1,10 +1,11 @@
 //! What the colours of a map over the image mean.
 
 use super::*;
-use crate::app::kit::widgets::rgb;
-use crate::app::kit::words::percent;
-use crate::plot::scale_color;
-use crate::render::shown::{CLIPPED, Scale, Shown};
+use crate::{
+    kit::{widgets::rgb, words::percent},
+    plot::scale_color,
+    render::shown::{CLIPPED, Scale, Shown},
+};
 
 /// Size of the strip of colours, points.
 const SIZE: [f32; 2] = [180.0, 10.0];

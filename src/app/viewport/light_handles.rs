@@ -3,11 +3,13 @@
 use glam::{DVec2, DVec3};
 
 use super::*;
-use crate::app::kit::drag::{Drag, steps};
-use crate::app::kit::widgets::shown;
-use crate::app::lights::{LightHandle, Pull, View, handles, nudged, pulled};
-use crate::document::AreaLight;
-use crate::scene::Outline;
+use crate::{
+    document::AreaLight,
+    kit::drag::{Drag, steps},
+    kit::widgets::shown,
+    lights::{LightHandle, Pull, View, handles, nudged, pulled},
+    scene::Outline,
+};
 
 /// Radius of a light's mark, points.
 const MARK: f32 = 7.0;

@@ -1,10 +1,7 @@
 //! What lies over the image for the user to act on: messages, and the way to a model of one's own.
 
 use super::*;
-use crate::app::services::messages::Offer;
-use crate::render::shown::Shown;
-use crate::render::worker::Level;
-use crate::scene::ModelSource;
+use crate::{render::shown::Shown, render::worker::Level, scene::ModelSource, services::messages::Offer};
 
 /// How long a message stays, seconds.
 const MESSAGE_SECONDS: f32 = 12.0;

@@ -21,8 +21,7 @@ mod reference;
 mod region;
 mod seen;
 
-use std::fmt::Debug;
-use std::hash::Hash;
+use std::{fmt::Debug, hash::Hash};
 
 use egui::*;
 
@@ -30,18 +29,20 @@ use magnifier::Magnifier;
 use orbit::Orbit;
 use seen::{hit_at, pixel_at};
 
-use super::actions::{Action, Command};
-use super::desk::Desk;
-use super::kit::drag::{arrows, wrapped_deg};
-use super::kit::icons::{self, Icon};
-use super::kit::keys::hold_arrows;
-use super::kit::{theme, widgets};
-use super::services::compare::View;
-use super::services::viewing::Resolution;
-use crate::document::ReferencePlace;
-use crate::job::Job;
-use crate::render::shown;
-use crate::render::worker::{Picture, Scene};
+use super::{
+    actions::Action,
+    actions::Command,
+    desk::Desk,
+    kit::{drag::arrows, drag::wrapped_deg, icons, icons::Icon, keys::hold_arrows, theme, widgets},
+    services::compare::View,
+    services::viewing::Resolution,
+};
+use crate::{
+    document::ReferencePlace,
+    job::Job,
+    render::shown,
+    render::worker::{Picture, Scene},
+};
 
 /// Degrees of the environment's turn for a drag of one point.
 const LIGHT_DEG_PER_POINT: f32 = 0.35;

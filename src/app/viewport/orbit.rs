@@ -3,8 +3,7 @@
 use glam::DVec3;
 
 use super::*;
-use crate::document::CameraSettings;
-use crate::scene::camera::framing_distance;
+use crate::{document::CameraSettings, scene::camera::framing_distance};
 
 /// Degrees of a turn for a drag of one point.
 const DEG_PER_POINT: f64 = 0.35;

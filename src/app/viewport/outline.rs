@@ -4,9 +4,7 @@ use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 use std::sync::Arc;
 
 use super::*;
-use crate::app::services::beside::Beside;
-use crate::app::services::selection::Thing;
-use crate::render::seen_map::{self, SeenMap};
+use crate::{render::seen_map, render::seen_map::SeenMap, services::beside::Beside, services::selection::Thing};
 
 /// The line as it is shown.
 #[derive(Default)]

@@ -2,10 +2,10 @@
 
 use super::seen::{hit_at, pixel_at};
 use super::*;
-use crate::app::services::look::SeenSurface;
-use crate::app::services::selection::Thing;
-use crate::app::services::viewing::Pick;
-use crate::document::MaterialSettings;
+use crate::{
+    document::MaterialSettings,
+    services::{look::SeenSurface, selection::Thing, viewing::Pick},
+};
 
 /// Lights up what the pointer is over while the tree of the scene is shown, and what a material would be dropped on; gives
 /// it the material where that is dropped.

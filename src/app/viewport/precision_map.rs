@@ -4,10 +4,12 @@ use std::sync::Arc;
 
 use super::header::in_bar;
 use super::*;
-use crate::app::kit::widgets::rgb;
-use crate::app::services::beside::Beside;
-use crate::job::precision::{Fault, PrecisionMap};
-use crate::render::precision_maps;
+use crate::{
+    job::precision::{Fault, PrecisionMap},
+    kit::widgets::rgb,
+    render::precision_maps,
+    services::beside::Beside,
+};
 
 /// Height of the legend, and its distance from the viewport's edges, points.
 const HEIGHT: f32 = 26.0;

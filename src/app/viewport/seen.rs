@@ -3,11 +3,11 @@
 use glam::DVec3;
 
 use super::*;
-use crate::app::services::look::SeenSurface;
-use crate::optics::material::Material;
-use crate::optics::vector::Vec3;
-use crate::scene::camera::camera_ray;
-use crate::scene::surface::surface_at;
+use crate::{
+    optics::{material::Material, vector::Vec3},
+    scene::{camera::camera_ray, surface::surface_at},
+    services::look::SeenSurface,
+};
 
 /// The place in the image, in pixels, below its size.
 pub fn pixel_at(at: Pos2, place: Rect, scene: &Scene) -> Option<[f64; 2]> {

@@ -8,10 +8,9 @@ use clap::Parser;
 use serde::Deserialize;
 use toml::{Spanned, Table, Value};
 
-use crate::cli::scene::SceneArguments;
-use crate::document::turntable::Turn;
-use crate::render::output::format_of;
-use crate::scene::path_text::path_text;
+use crate::{
+    cli::scene::SceneArguments, document::turntable::Turn, render::output::format_of, scene::path_text::path_text,
+};
 
 /// Options whose values name files: these are looked for beside the batch's file first.
 const FILES: [&str; 4] = ["model", "material", "environment", "project"];

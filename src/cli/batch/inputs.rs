@@ -1,17 +1,15 @@
 //! The hash of all that an image is made of: by it a batch knows what is done.
 
-use std::hash::Hasher as _;
-use std::io::Read as _;
-use std::path::Path;
+use std::{hash::Hasher as _, io::Read as _, path::Path};
 
 use anyhow::Context;
 use siphasher::sip128::{Hasher128 as _, SipHasher13};
 
-use crate::document::Document;
-use crate::scene::Model;
-use crate::scene::environment::EnvironmentSource;
-use crate::scene::mesh::Mesh;
-use crate::store::project::document_text;
+use crate::{
+    document::Document,
+    scene::{Model, environment::EnvironmentSource, mesh::Mesh},
+    store::project::document_text,
+};
 
 /// To be raised where the same inputs make other files than before.
 const VERSION: u32 = 2;

@@ -4,20 +4,21 @@ use std::path::PathBuf;
 
 use anyhow::{Context, bail};
 
-use super::BatchArguments;
-use super::file::{BatchFile, Picture, Scene};
-use super::inputs::Inputs;
-use super::row::{Row, Status};
-use super::sheet;
-use crate::cli::merge::{denoised, joined};
-use crate::cli::render::{render_to_end, rendered};
-use crate::document::turntable::turned;
-use crate::document::{Denoise, Document};
-use crate::job::film::Image;
-use crate::render::Session;
-use crate::render::output::{self, Rendered};
-use crate::render::sums;
-use crate::store::replace::{remove_leftovers, save_atomically};
+use super::{
+    BatchArguments,
+    file::{BatchFile, Picture, Scene},
+    inputs::Inputs,
+    row::{Row, Status},
+    sheet,
+};
+use crate::{
+    cli::merge::{denoised, joined},
+    cli::render::{render_to_end, rendered},
+    document::{Denoise, Document, turntable::turned},
+    job::film::Image,
+    render::{Session, output, output::Rendered, sums},
+    store::replace::{remove_leftovers, save_atomically},
+};
 
 /// What makes the images of a batch.
 pub struct Maker<'a> {

@@ -7,20 +7,14 @@ mod row;
 mod sheet;
 mod template;
 
-use std::ops::RangeInclusive;
-use std::path::PathBuf;
+use std::{ops::RangeInclusive, path::PathBuf};
 
 use anyhow::{Context, bail};
 use clap::Args;
 
-use self::file::{BatchFile, Picture};
-use self::maker::Maker;
-use self::row::{Row, Status};
-use super::answer::{Destination, Lines};
-use super::{PartialFailure, parse};
-use crate::console::message;
-use crate::render::EngineChoice;
-use crate::store::replace::save_atomically;
+use self::{file::BatchFile, file::Picture, maker::Maker, row::Row, row::Status};
+use super::{PartialFailure, answer::Destination, answer::Lines, parse};
+use crate::{console::message, render::EngineChoice, store::replace::save_atomically};
 
 /// Arguments of `glossmith batch`.
 #[derive(Debug, Args)]

@@ -1,21 +1,19 @@
 //! Contact sheets: all images of a batch, small, in one image and on a page that needs no network.
 
-use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+use std::{fmt::Write as _, path::Path, path::PathBuf};
 
 use anyhow::Context;
-use image::RgbImage;
-use image::imageops::overlay;
+use image::{RgbImage, imageops::overlay};
 
-use super::file::{BatchFile, Picture};
-use super::row::Row;
-use crate::cli::render::thumbnail;
-use crate::console::message;
-use crate::document::ViewSettings;
-use crate::job::film::Image;
-use crate::plot::{PictureSheet, plot_file};
-use crate::store::picture::png_bytes;
-use crate::store::replace::save_atomically;
+use super::{file::BatchFile, file::Picture, row::Row};
+use crate::{
+    cli::render::thumbnail,
+    console::message,
+    document::ViewSettings,
+    job::film::Image,
+    plot::{PictureSheet, plot_file},
+    store::{picture::png_bytes, replace::save_atomically},
+};
 
 /// Longest side of a thumbnail, pixels.
 const SIDE: u32 = 192;

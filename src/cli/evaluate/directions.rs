@@ -1,7 +1,6 @@
 //! Pairs of directions, from a file or as a grid.
 
-use std::fmt::Display;
-use std::path::Path;
+use std::{fmt::Display, path::Path};
 
 use anyhow::{Context, bail};
 

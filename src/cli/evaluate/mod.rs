@@ -2,23 +2,21 @@
 
 mod directions;
 
-use std::io::Write as _;
-use std::path::PathBuf;
-use std::str::FromStr as _;
+use std::{io::Write as _, path::PathBuf, str::FromStr as _};
 
 use anyhow::bail;
 use clap::Args;
 
 use self::directions::{Pairs, unit_direction};
-use super::answer::{Answer, file_names};
-use super::{names, parse, scene};
-use crate::console::message;
-use crate::document::parameter::assign;
-use crate::document::{ImportLobe, MaterialSettings};
-use crate::named::named;
-use crate::render::{EngineChoice, Precision};
-use crate::store::replace::save_by;
-use crate::study::evaluate::{Albedo, BATCHES, Evaluation, Evaluator};
+use super::{answer::Answer, answer::file_names, names, parse, scene};
+use crate::{
+    console::message,
+    document::{ImportLobe, MaterialSettings, parameter::assign},
+    named::named,
+    render::{EngineChoice, Precision},
+    store::replace::save_by,
+    study::evaluate::{Albedo, BATCHES, Evaluation, Evaluator},
+};
 
 /// Steps of a grid without a number.
 const GRID: &str = "9";

@@ -5,16 +5,16 @@ use std::time::Duration;
 use clap::Args;
 
 use super::{CommonArguments, ReferenceArguments, watched};
-use crate::cli::render::thumbnail;
-use crate::console::{message, output};
-use crate::document::Document;
-use crate::job::film::Image;
-use crate::job::plan::Plan;
-use crate::plot::lobe_view::Axis;
-use crate::plot::{NamedPoint, PictureSheet, PointPlot, plot_file};
-use crate::render::{EngineChoice, Session};
-use crate::study::race::{Race, RaceOptions, Runner, race};
-use crate::study::technique::{Technique, TechniqueError, techniques};
+use crate::{
+    cli::render::thumbnail,
+    console::{message, output},
+    document::Document,
+    job::{film::Image, plan::Plan},
+    plot::{NamedPoint, PictureSheet, PointPlot, lobe_view::Axis, plot_file},
+    render::{EngineChoice, Session},
+    study::race::{Race, RaceOptions, Runner, race},
+    study::technique::{Technique, TechniqueError, techniques},
+};
 
 /// Those that take part where none are named.
 const DEFAULT: [&str; 6] = ["strategy", "sequence", "adaptive", "bounces", "fresnel", "lobe"];

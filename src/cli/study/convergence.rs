@@ -1,9 +1,11 @@
 //! `glossmith study convergence`: error against time.
 
 use super::{ReferenceArguments, watched};
-use crate::console::output;
-use crate::plot::lobe_view::{Axis, LinePlot, Series};
-use crate::study::{ConvergencePoint, ConvergenceReport, DenoisedPoint, convergence};
+use crate::{
+    console::output,
+    plot::lobe_view::{Axis, LinePlot, Series},
+    study::{ConvergencePoint, ConvergenceReport, DenoisedPoint, convergence},
+};
 
 /// Longest time for the reference where none is given, seconds; the same quickly.
 const REFERENCE_SECONDS: f64 = 60.0;

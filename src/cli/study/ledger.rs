@@ -3,9 +3,11 @@
 use std::time::Duration;
 
 use super::{CommonArguments, watched};
-use crate::console::output;
-use crate::plot::BarPlot;
-use crate::study::ledger::{Ledger, LedgerEntry, LedgerOptions, ledger};
+use crate::{
+    console::output,
+    plot::BarPlot,
+    study::ledger::{Ledger, LedgerEntry, LedgerOptions, ledger},
+};
 
 const COLUMNS: &str = "name,label,instead,ms_with,ms_without,ms,share_of_frame,noise_share,picture_change,\
                        picture_change_low,picture_change_high,words";

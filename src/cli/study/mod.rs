@@ -11,16 +11,15 @@ use clap::{Args, Subcommand};
 use serde::Serialize;
 use serde_json::Value as Json;
 
-use super::answer::Answer;
-use super::parse::number_in;
-use super::render::Bar;
-use super::scene::SceneArguments;
-use crate::console::message;
-use crate::document::Document;
-use crate::plot::{Figure, plot_file};
-use crate::render::{EngineChoice, Session};
-use crate::store::replace::save_atomically;
-use crate::study::{StudyError, StudyProgress};
+use super::{answer::Answer, parse::number_in, render::Bar, scene::SceneArguments};
+use crate::{
+    console::message,
+    document::Document,
+    plot::{Figure, plot_file},
+    render::{EngineChoice, Session},
+    store::replace::save_atomically,
+    study::{StudyError, StudyProgress},
+};
 
 /// Largest side of an image of `--quick`.
 const QUICK_SIDE: u32 = 48;

@@ -1,10 +1,8 @@
 //! Camera rays of a tile, and the shortcut for tiles of background alone.
 
-use super::group::groups;
-use super::vectors::Vectors;
 use super::*;
-use crate::instructions;
-use crate::scene::{Hit, Packet};
+use super::{group::groups, vectors::Vectors};
+use crate::{instructions, scene::Hit, scene::Packet};
 
 impl<T: Single> Integrator<'_, T> {
     /// Adds the paths of `samples` (first, count) of all pixels of a tile, with their camera rays. Paths of a pixel block

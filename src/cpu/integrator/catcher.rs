@@ -7,9 +7,11 @@
 //! Over a transparent background, alpha is 1 minus the light's luminance.
 
 use super::*;
-use crate::cpu::recorder::Purpose;
-use crate::job::Catcher;
-use crate::scene::catcher::{catcher_light, catcher_reflectance};
+use crate::{
+    cpu::recorder::Purpose,
+    job::Catcher,
+    scene::catcher::{catcher_light, catcher_reflectance},
+};
 
 /// Dimensions of the catcher's choice to mirror, and (the next one) of the background's blur: beyond those of every path.
 pub const CATCHER_DIMENSION: u32 = 12288;

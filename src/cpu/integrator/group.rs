@@ -1,12 +1,9 @@
 //! Groups of paths, one path per SIMD lane: loads from and stores to the wave's fields.
 
-use super::paths::PathOutput;
-use super::vectors::Vectors;
 use super::*;
-use crate::cpu::recorder::Purpose;
-use crate::optics::random::random_pairs;
-use std::marker::PhantomData;
-use std::ops::Range;
+use super::{paths::PathOutput, vectors::Vectors};
+use crate::{cpu::recorder::Purpose, optics::random::random_pairs};
+use std::{marker::PhantomData, ops::Range};
 
 /// A run of paths with consecutive indices, at most [`Real::LANES`]. Lanes beyond the run load the elements that follow;
 /// their results are ignored.

@@ -3,19 +3,26 @@
 
 use super::shadow_rays::ShadowRays;
 use super::*;
-use crate::cpu::recorder::Purpose;
-use crate::job::BackgroundKind;
-use crate::optics::coat_medium::coat_over_emission;
-use crate::optics::frame::{frame_from_normal, world_from_local};
-use crate::optics::layer::material_evaluate;
-use crate::optics::material::{COAT_ABSORBS, HAS_PROFILE};
-use crate::optics::warp::{split, uniform_disc};
-use crate::scene::environment::{
-    drawn_rows, environment_density_at, environment_local_from_world, environment_radiance_at, environment_uv,
-    environment_world_from_local, prefetch_cell, prefetch_chosen, prefetch_guide, prefetch_texels, sample_in_rows,
+use crate::{
+    cpu::recorder::Purpose,
+    job::BackgroundKind,
+    optics::{
+        coat_medium::coat_over_emission,
+        frame::{frame_from_normal, world_from_local},
+        layer::material_evaluate,
+        material::{COAT_ABSORBS, HAS_PROFILE},
+        warp::{split, uniform_disc},
+    },
+    scene::{
+        environment::{
+            drawn_rows, environment_density_at, environment_local_from_world, environment_radiance_at, environment_uv,
+            environment_world_from_local, prefetch_cell, prefetch_chosen, prefetch_guide, prefetch_texels,
+            sample_in_rows,
+        },
+        light::{Emitters, LightSample, is_spot, light_density, light_sample, spot_share},
+        light_profile::profile_share,
+    },
 };
-use crate::scene::light::{Emitters, LightSample, is_spot, light_density, light_sample, spot_share};
-use crate::scene::light_profile::profile_share;
 
 impl<T: Single> Integrator<'_, T> {
     /// Coordinates of world directions in the environment map.

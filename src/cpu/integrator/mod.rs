@@ -18,28 +18,35 @@ mod wave;
 use std::borrow::Cow;
 
 use super::recorder::{End, Event, LightSource, Recorder};
-use crate::job::effect::EffectId;
-use crate::job::guides::{GUIDE_SAMPLES, GuideSums};
-use crate::job::light_sums::ENVIRONMENT_GROUP;
-use crate::job::{Job, Settings, Strategy};
-use crate::optics::layer::{Layers, material_albedo, material_normal};
-use crate::optics::material::Material;
 use crate::optics::prelude::*;
-use crate::optics::random::Sequence;
-use crate::scene::camera::Camera;
-use crate::scene::environment::{Distribution, Environment};
-use crate::scene::light::Lights;
-use crate::scene::medium::NO_MEDIUM;
-use crate::scene::surface::{Hits, SurfacePoint, surfaces_at};
-use crate::scene::texture::{Textures, textured_material};
-use crate::scene::{Geometry, PACKET};
+use crate::{
+    job::{
+        Job, Settings, Strategy,
+        effect::EffectId,
+        guides::{GUIDE_SAMPLES, GuideSums},
+        light_sums::ENVIRONMENT_GROUP,
+    },
+    optics::{
+        layer::{Layers, material_albedo, material_normal},
+        material::Material,
+        random::Sequence,
+    },
+    scene::{
+        Geometry, PACKET,
+        camera::Camera,
+        environment::{Distribution, Environment},
+        light::Lights,
+        medium::NO_MEDIUM,
+        surface::{Hits, SurfacePoint, surfaces_at},
+        texture::{Textures, textured_material},
+    },
+};
 pub use catcher::CATCHER_DIMENSION;
 use catcher_hit::CatcherHit;
 use group::{Group, Members};
 use paths::{GuideRecord, Paths};
 pub use results::Results;
-pub use wave::WAVE_SAMPLES;
-pub use wave::{BLOCK_PIXELS, PATHS, Tile, Wave};
+pub use wave::{BLOCK_PIXELS, PATHS, Tile, WAVE_SAMPLES, Wave};
 
 /// Random pairs before the first bounce: pixel and lens.
 pub const FIRST_DIMENSION: u32 = 2;

@@ -4,12 +4,13 @@
 //! together are adjacent; a position in it is an *index*. [`PathOutput`] holds what a path accumulates, by its *id*: its
 //! fixed number in the wave.
 
-use super::shadow_rays::ShadowRays;
-use super::vectors::{Vectors, gather};
 use super::*;
-use crate::optics::random::{RandomState, path_state};
-use crate::optics::vector::Vec3;
-use crate::scene::Hit;
+use super::{shadow_rays::ShadowRays, vectors::Vectors, vectors::gather};
+use crate::{
+    optics::random::{RandomState, path_state},
+    optics::vector::Vec3,
+    scene::Hit,
+};
 use std::mem::swap;
 
 /// What paths need to continue, by index.

@@ -2,10 +2,12 @@
 
 use super::shadow_rays::ShadowRays;
 use super::*;
-use crate::cpu::recorder::Purpose;
-use crate::optics::random::random_pair;
-use crate::scene::camera::{LENS_DIMENSION, PIXEL_DIMENSION, pixel_ray};
-use crate::scene::surface::{hit_opacity, passed_origin};
+use crate::{
+    cpu::recorder::Purpose,
+    optics::random::random_pair,
+    scene::camera::{LENS_DIMENSION, PIXEL_DIMENSION, pixel_ray},
+    scene::surface::{hit_opacity, passed_origin},
+};
 
 impl<T: Single> Integrator<'_, T> {
     /// Generates the camera rays.

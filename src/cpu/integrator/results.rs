@@ -1,8 +1,6 @@
 //! Results of a wave's paths as structure of arrays.
 
-use super::PathResult;
-use super::group::Group;
-use super::vectors::Vectors;
+use super::{PathResult, group::Group, vectors::Vectors};
 use crate::job::guides::GuideSums;
 use crate::optics::prelude::*;
 

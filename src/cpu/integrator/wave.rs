@@ -8,12 +8,13 @@
 
 use super::group::groups;
 use super::*;
-use crate::cpu::recorder::Unrecorded;
-use crate::instructions;
-use crate::job::BackgroundKind;
-use crate::job::tiles::TILE_SIDE;
-use crate::optics::layer::material_layers;
-use crate::scene::{Hit, OCTANTS, Packet, ray_octant};
+use crate::{
+    cpu::recorder::Unrecorded,
+    instructions,
+    job::{BackgroundKind, tiles::TILE_SIDE},
+    optics::layer::material_layers,
+    scene::{Hit, OCTANTS, Packet, ray_octant},
+};
 use std::ops::Range;
 
 /// Pixels of a tile at most.

@@ -1,10 +1,10 @@
 //! What happens to samples that point into the surface, and where none can.
 
 use super::{Decision, Facts};
-use crate::optics::curve::Curve;
-use crate::optics::lobe::{Horizon, Lobe};
-use crate::optics::material::Material;
-use crate::scene::facing::least_view_cosine;
+use crate::{
+    optics::{curve::Curve, lobe::Horizon, lobe::Lobe, material::Material},
+    scene::facing::least_view_cosine,
+};
 
 /// How far below the view's cosine roughness must stay: the rounding of either.
 const MARGIN: f64 = 1e-3;

@@ -9,14 +9,16 @@ mod table;
 
 use std::borrow::Cow;
 
-use crate::document::{Document, MaterialSettings};
-use crate::job::Settings;
-use crate::job::effect::{ANY, Decision, EffectId};
-use crate::job::plan::Plan;
-use crate::optics::material::Material;
-use crate::scene::Geometry;
-use crate::scene::environment::Environment;
-use crate::scene::texture::TextureTarget;
+use crate::{
+    document::{Document, MaterialSettings},
+    job::{
+        Settings,
+        effect::{ANY, Decision, EffectId},
+        plan::Plan,
+    },
+    optics::material::Material,
+    scene::{Geometry, environment::Environment, texture::TextureTarget},
+};
 
 pub use super::switches::{EffectSwitches, Switch, SwitchError};
 pub use table::EFFECTS;

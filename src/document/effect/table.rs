@@ -1,20 +1,30 @@
 //! The table of effects.
 
-use super::Needs::{AnyMaterial, Scene, When};
-use super::Remove::{Document, EachMaterial, Never, Switched, Textures};
-use super::{Effect, Facts, horizon};
-use crate::document::import::{ImportLobe, ROUGHNESS_MAX};
-use crate::document::{AreaLight, Background, Denoise, GroundKind, MaterialSettings, Strategy};
-use crate::job::effect::{ANY, Decision, EffectId};
-use crate::optics::curve::Curve;
-use crate::optics::fresnel::Fresnel;
-use crate::optics::layer::material_is_mirror;
-use crate::optics::lobe::Lobe;
-use crate::optics::material::{
-    COAT_ABSORBS, COAT_IS_GGX, COMPENSATES, FILM_BANDS, HAS_BOX, Material, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY,
+use super::{
+    Effect, Facts,
+    Needs::{AnyMaterial, Scene, When},
+    Remove::{Document, EachMaterial, Never, Switched, Textures},
+    horizon,
 };
-use crate::optics::vector::Vec3;
-use crate::scene::texture::TextureTarget as On;
+use crate::{
+    document::{
+        AreaLight, Background, Denoise, GroundKind, MaterialSettings, Strategy,
+        import::{ImportLobe, ROUGHNESS_MAX},
+    },
+    job::effect::{ANY, Decision, EffectId},
+    optics::{
+        curve::Curve,
+        fresnel::Fresnel,
+        layer::material_is_mirror,
+        lobe::Lobe,
+        material::{
+            COAT_ABSORBS, COAT_IS_GGX, COMPENSATES, FILM_BANDS, HAS_BOX, Material, VERTEX_BASE, VERTEX_EMISSION,
+            VERTEX_OPACITY,
+        },
+        vector::Vec3,
+    },
+    scene::texture::TextureTarget as On,
+};
 
 macro_rules! effects {
     ($($id:ident $label:literal $help:literal $needs:expr, $remove:expr;)*) => {

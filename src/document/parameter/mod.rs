@@ -11,8 +11,7 @@ mod text;
 
 use serde_json::Value as Json;
 
-use super::custom_curve::CustomCurve;
-use super::{Document, MaterialSettings};
+use super::{Document, MaterialSettings, custom_curve::CustomCurve};
 use crate::named::Named;
 use crate::scene::texture::{TextureTarget, UserTexture};
 use text::shortened;
@@ -21,8 +20,7 @@ pub use of_document::SETTINGS;
 pub use of_light::LIGHT_PARAMETERS;
 pub use of_material::PARAMETERS;
 pub use of_texture::TEXTURE_PARAMETERS;
-pub use text::{ColorError, parse_color};
-pub(crate) use text::{nearest, nearest_key};
+pub use text::{ColorError, nearest, nearest_key, parse_color};
 
 /// The value of a parameter.
 #[derive(Clone, Debug, PartialEq)]
@@ -339,12 +337,12 @@ impl<T> Parameter<T> {
     }
 
     /// Sets a value that may be out of range; one of another kind changes nothing.
-    pub(crate) fn put(&self, of: &mut T, value: Value) {
+    pub fn put(&self, of: &mut T, value: Value) {
         (self.set)(of, value);
     }
 
     /// The value as formats of other programs have it: a colour, or a number three times.
-    pub(crate) fn rgb(&self, of: &T) -> Option<[f32; 3]> {
+    pub fn rgb(&self, of: &T) -> Option<[f32; 3]> {
         match self.get(of) {
             Value::Number(x) => Some([x as f32; 3]),
             Value::Color(color) => Some(color),
@@ -353,7 +351,7 @@ impl<T> Parameter<T> {
     }
 
     /// Sets such a value, which may be out of range.
-    pub(crate) fn put_rgb(&self, of: &mut T, numbers: [f32; 3]) {
+    pub fn put_rgb(&self, of: &mut T, numbers: [f32; 3]) {
         let value = match self.kind {
             Kind::Number { .. } => Value::Number(numbers[0].into()),
             Kind::Color { .. } => Value::Color(numbers),

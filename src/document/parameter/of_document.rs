@@ -2,15 +2,16 @@
 
 use std::sync::LazyLock;
 
-use super::accessors::{choice, color, field, rows, toggle};
-use super::line::{count, ends, real, single};
-use super::{Kind, Parameter, Stage, Takes, Value};
-use crate::document::{
-    Background, Denoise, DenoiseWhen, Document, GroundKind, LightPaths, PixelFilter, Strategy, range,
+use super::{
+    Kind, Parameter, Stage, Takes, Value,
+    accessors::{choice, color, field, rows, toggle},
+    line::{count, ends, real, single},
 };
-use crate::optics::random::Sequence;
-use crate::optics::tone::ToneCurve;
-use crate::scene::camera::Projection;
+use crate::{
+    document::{Background, Denoise, DenoiseWhen, Document, GroundKind, LightPaths, PixelFilter, Strategy, range},
+    optics::{random::Sequence, tone::ToneCurve},
+    scene::camera::Projection,
+};
 
 /// Every setting that is a value of its own, in the order of the panels. What names a file, the list of area lights, and
 /// the rendered part of the image stand beside them.

@@ -2,9 +2,11 @@
 
 use std::sync::LazyLock;
 
-use super::accessors::{choice, color, field, rows, toggle};
-use super::line::{ends, real, single};
-use super::{Kind, Parameter, Stage, Takes};
+use super::{
+    Kind, Parameter, Stage, Takes,
+    accessors::{choice, color, field, rows, toggle},
+    line::{ends, real, single},
+};
 use crate::document::{AreaLight, AreaLightShape, range};
 
 /// Every parameter of an area light, in the order of its rows; the keys are those of project files.

@@ -2,16 +2,19 @@
 
 use std::sync::LazyLock;
 
-use super::accessors::{choice, color, field, own, rows, share, toggle};
-use super::line::single;
-use super::{Choice, Kind, Parameter, Stage, Value};
-use crate::document::custom_curve::CustomCurve;
-use crate::document::material::FILM_THICKNESS_MAX;
-use crate::document::{CoatLobe, Conductor, MaterialSettings, SPECULAR_COLOR_MAX};
-use crate::optics::curve::Curve;
-use crate::optics::fresnel::Fresnel;
-use crate::optics::lobe::{Horizon, Lobe};
-use crate::scene::texture::TextureTarget as On;
+use super::{
+    Choice, Kind, Parameter, Stage, Value,
+    accessors::{choice, color, field, own, rows, share, toggle},
+    line::single,
+};
+use crate::{
+    document::{
+        CoatLobe, Conductor, MaterialSettings, SPECULAR_COLOR_MAX, custom_curve::CustomCurve,
+        material::FILM_THICKNESS_MAX,
+    },
+    optics::{curve::Curve, fresnel::Fresnel, lobe::Horizon, lobe::Lobe},
+    scene::texture::TextureTarget as On,
+};
 
 /// Every parameter, in the order of the panels. In files they are read in this order too: a conductor before the η and
 /// k that may replace its own.

@@ -2,9 +2,11 @@
 
 use std::sync::LazyLock;
 
-use super::accessors::{choice, field, rows, toggle};
-use super::line::single;
-use super::{Parameter, Stage, Takes};
+use super::{
+    Parameter, Stage, Takes,
+    accessors::{choice, field, rows, toggle},
+    line::single,
+};
 use crate::scene::texture::{TextureChannel, TextureProjection, TextureSpace, UserTexture};
 
 /// Every parameter of an image on a material, in the order of its rows; the keys are those inside its object in files, and on

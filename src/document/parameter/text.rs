@@ -1,14 +1,11 @@
 //! Values as text and as JSON.
 
-use std::fmt::Write as _;
-use std::str::FromStr;
+use std::{fmt::Write as _, str::FromStr};
 
 use serde_json::Value as Json;
 
 use super::{Choice, Kind, Parameter, Precision, Value, keys};
-use crate::document::custom_curve::DISTANCE_MAX;
-use crate::optics::tone::linear_from_srgb;
-use crate::optics::vector::Vec3;
+use crate::{document::custom_curve::DISTANCE_MAX, optics::tone::linear_from_srgb, optics::vector::Vec3};
 
 impl Kind {
     /// The value that a text says; `None` where it says none of this kind. Ranges are not looked at.
@@ -236,13 +233,13 @@ pub(super) fn shortened(text: String) -> String {
 }
 
 /// The key that was probably meant, the group being left out or not.
-pub(crate) fn nearest_key(key: &str) -> Option<&'static str> {
+pub fn nearest_key(key: &str) -> Option<&'static str> {
     let short = |known: &'static str| known.rsplit_once('.').map_or(known, |(_, short)| short);
     nearest(key, keys().flat_map(|known| [(known, known), (short(known), known)]))
 }
 
 /// What belongs to the name that was probably meant: the nearest by edits, of which a third of the letters may be needed.
-pub(crate) fn nearest<'a, T>(name: &str, known: impl Iterator<Item = (&'a str, T)>) -> Option<T> {
+pub fn nearest<'a, T>(name: &str, known: impl Iterator<Item = (&'a str, T)>) -> Option<T> {
     let near = known
         .map(|(known, of_it)| (edit_distance(name, known), of_it))
         .min_by_key(|(edits, _)| *edits);

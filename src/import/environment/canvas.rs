@@ -1,15 +1,13 @@
 //! A file to be read, and the image that it becomes: filled pixel by pixel, and reduced on the fly if too large.
 
-use std::fmt::Display;
-use std::io;
-use std::path::Path;
+use std::{fmt::Display, io, path::Path};
 
 use super::error::EnvironmentError;
-use crate::limits::{BYTES_MAX, Budget, OverBudget, open, read_watched};
-use crate::optics::primaries::{Chromaticities, Matrix, NoSpace, transformed};
-use crate::scene::Loading;
-use crate::scene::environment::{
-    EnvironmentEncoding, MAX_HEIGHT, MAX_WIDTH, MapError, SOURCE_MAX_HEIGHT, SOURCE_MAX_WIDTH,
+use crate::{
+    limits::{BYTES_MAX, Budget, OverBudget, open, read_watched},
+    optics::primaries::{Chromaticities, Matrix, NoSpace, transformed},
+    scene::Loading,
+    scene::environment::{EnvironmentEncoding, MAX_HEIGHT, MAX_WIDTH, MapError, SOURCE_MAX_HEIGHT, SOURCE_MAX_WIDTH},
 };
 
 /// A file to be read.

@@ -5,8 +5,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::canvas::{Picture, Source};
-use super::error::EnvironmentError;
+use super::{canvas::Picture, canvas::Source, error::EnvironmentError};
 use crate::endings::is_picture;
 use crate::scene::environment::{MAX_HEIGHT, texel_direction};
 

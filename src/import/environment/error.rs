@@ -1,7 +1,6 @@
 //! Errors of environments from files, in one line each.
 
-use crate::scene::Cancelled;
-use crate::scene::environment::MapError;
+use crate::scene::{Cancelled, environment::MapError};
 
 #[derive(Debug, thiserror::Error)]
 pub enum EnvironmentError {

@@ -4,11 +4,12 @@ use image::{DynamicImage, Rgb};
 
 use super::canvas::{Canvas, Picture, Source};
 use super::error::EnvironmentError;
-use crate::endings::has_ending;
-use crate::optics::tone::linear_from_srgb;
-use crate::optics::vector::Vec3;
-use crate::picture::{Encoded, Refusal, decode, depth, is_container};
-use crate::scene::environment::{EnvironmentEncoding, MAX_WIDTH};
+use crate::{
+    endings::has_ending,
+    optics::{tone::linear_from_srgb, vector::Vec3},
+    picture::{Encoded, Refusal, decode, depth, is_container},
+    scene::environment::{EnvironmentEncoding, MAX_WIDTH},
+};
 
 /// The longest side of a cube's face that is of use: four of them are as wide as the widest map.
 const FACE_MAX: u32 = MAX_WIDTH / 4;

@@ -13,10 +13,12 @@ use canvas::{Picture, Source};
 pub use cube::are_faces;
 pub use error::EnvironmentError;
 
-use crate::endings::{ending, is_picture};
-use crate::limits::Budget;
-use crate::scene::Loading;
-use crate::scene::environment::{Environment, EnvironmentEncoding, EnvironmentSource};
+use crate::{
+    endings::{ending, is_picture},
+    limits::Budget,
+    scene::Loading,
+    scene::environment::{Environment, EnvironmentEncoding, EnvironmentSource},
+};
 
 /// Bytes per texel of unfolding a cube and of the sampling tables, besides the map.
 const WORK_BYTES: u64 = 40;

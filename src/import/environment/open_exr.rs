@@ -3,24 +3,18 @@
 use std::fs::File;
 use std::io::{BufReader, Read, Seek};
 
-use exr::block::UncompressedBlock;
-use exr::block::chunk::Chunk;
-use exr::block::lines::LineRef;
-use exr::block::reader::{ChunksReader, Reader};
-use exr::compression::Compression;
-use exr::error::Error as ExrError;
-use exr::math::Vec2;
-use exr::meta::MetaData;
-use exr::meta::attribute::{EnvironmentMap, SampleType};
-use exr::meta::header::Header;
-use exr::prelude::f16;
+use exr::{
+    block::{UncompressedBlock, chunk::Chunk, lines::LineRef, reader::ChunksReader, reader::Reader},
+    compression::Compression,
+    error::Error as ExrError,
+    math::Vec2,
+    meta::{MetaData, attribute::EnvironmentMap, attribute::SampleType, header::Header},
+    prelude::f16,
+};
 
 use super::canvas::{Canvas, Picture, Source};
 use super::error::EnvironmentError;
-use crate::limits;
-use crate::panics::contained;
-use crate::parallel;
-use crate::picture::exr_space;
+use crate::{limits, panics::contained, parallel, picture::exr_space};
 
 const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 /// The bit of the version field that says that some part is deep.

@@ -2,8 +2,7 @@
 
 use std::io::{Cursor, ErrorKind, Read};
 
-use image::codecs::hdr::HdrDecoder;
-use image::{ImageDecoder, ImageError};
+use image::{ImageDecoder, ImageError, codecs::hdr::HdrDecoder};
 
 use super::canvas::{Canvas, Picture, Source};
 use super::error::EnvironmentError;

@@ -6,11 +6,15 @@ use std::collections::HashSet;
 use glam::DVec3;
 use ufbx::{MaterialMap, ShaderType, TextureType, Vec4, WrapMode};
 
-use crate::file_parameter::{FileParameter, Goes};
-use crate::maps::{Maps, Part, grey, holds_heights, opacity_of};
-use crate::scene::report::{Fate, ImportReport};
-use crate::scene::texture::{TextureTarget, texture_mean};
-use crate::scene::{AlphaMode, Filter, Slot, TextureRef, Wrap};
+use crate::{
+    file_parameter::{FileParameter, Goes},
+    maps::{Maps, Part, grey, holds_heights, opacity_of},
+    scene::{
+        AlphaMode, Filter, Slot, TextureRef, Wrap,
+        report::{Fate, ImportReport},
+        texture::{TextureTarget, texture_mean},
+    },
+};
 
 use Goes::Nowhere;
 

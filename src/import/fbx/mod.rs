@@ -5,8 +5,7 @@
 mod material;
 pub(crate) mod polygons;
 
-use std::collections::HashMap;
-use std::path::Path;
+use std::{collections::HashMap, path::Path};
 
 use glam::{DMat4, DVec3};
 use ufbx::{
@@ -18,15 +17,19 @@ pub use self::material::FBX_PARAMETERS;
 
 use self::material::{Painted, Painter};
 use self::polygons::{Broken, Look, Polygons};
-use crate::assembly::{Assembly, camera_at, light_at};
-use crate::files::{Files, Import};
-use crate::limits::LIMIT_VARIABLE;
-use crate::maps::Maps;
-use crate::model_error::ModelError;
-use crate::scene::mesh::Mesh;
-use crate::scene::report::{Fate, ImportReport};
-use crate::scene::texture::TextureTarget;
-use crate::scene::{LightKind, Loading, Model, ModelCamera, ModelLens, ModelLight, ModelOptions, Slot};
+use crate::{
+    assembly::{Assembly, camera_at, light_at},
+    files::{Files, Import},
+    limits::LIMIT_VARIABLE,
+    maps::Maps,
+    model_error::ModelError,
+    scene::{
+        LightKind, Loading, Model, ModelCamera, ModelLens, ModelLight, ModelOptions, Slot,
+        mesh::Mesh,
+        report::{Fate, ImportReport},
+        texture::TextureTarget,
+    },
+};
 
 /// Nodes deeper than this are refused.
 const DEPTH_MAX: u32 = 4096;

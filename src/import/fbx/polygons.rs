@@ -5,11 +5,11 @@ use std::collections::HashMap;
 use glam::{DVec3, Vec2, Vec3, Vec4};
 use ufbx::{Face, VertexVec2, VertexVec4};
 
-use crate::optics::tone::linear_from_srgb;
-use crate::optics::vector::vec3;
-use crate::scene::Loading;
-use crate::scene::mesh::Mesh;
-use crate::scene::report::{Fate, ImportReport};
+use crate::{
+    optics::tone::linear_from_srgb,
+    optics::vector::vec3,
+    scene::{Loading, mesh::Mesh, report::Fate, report::ImportReport},
+};
 
 /// Index of what a corner doesn't have.
 const NONE: u32 = u32::MAX;

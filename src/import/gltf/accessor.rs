@@ -1,7 +1,6 @@
 //! Numbers out of buffers, with every range checked.
 
-use super::container::Document;
-use super::json::Sparse;
+use super::{container::Document, json::Sparse};
 
 /// Elements that an accessor may have without any bytes behind them.
 const MAX_ZEROS: usize = 1 << 24;

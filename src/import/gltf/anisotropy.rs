@@ -2,9 +2,13 @@
 //!
 //! Across the direction of anisotropy α is roughness², along it mix(roughness², 1, strength²).
 
-use crate::optics::lobe::{anisotropy_from_ratio, stretch_from_anisotropy};
-use crate::scene::texture::{TextureTarget, texture_mean};
-use crate::scene::{Slot, Texture, TextureRef};
+use crate::{
+    optics::lobe::{anisotropy_from_ratio, stretch_from_anisotropy},
+    scene::{
+        Slot, Texture, TextureRef,
+        texture::{TextureTarget, texture_mean},
+    },
+};
 
 /// Two widths in one of the two parametrisations.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,15 +4,14 @@ use std::collections::HashSet;
 
 use glam::DMat4;
 
-use super::container::Document;
-use super::material::Materials;
-use super::nodes::{MeshNode, node_name};
-use super::pose::Pose;
-use super::primitive::{Bending, read_mesh};
-use crate::assembly::Assembly;
-use crate::model_error::ModelError;
-use crate::scene::Model;
-use crate::scene::report::ImportReport;
+use super::{
+    container::Document,
+    material::Materials,
+    nodes::{MeshNode, node_name},
+    pose::Pose,
+    primitive::{Bending, read_mesh},
+};
+use crate::{assembly::Assembly, model_error::ModelError, scene::Model, scene::report::ImportReport};
 
 /// Joins all meshes of a scene, with their objects.
 pub(super) fn assemble(

@@ -5,9 +5,11 @@ use draco_gltf::{MeshoptFilter, MeshoptMode, PackedGeometry};
 use serde::Deserialize;
 use serde_json::Value as Json;
 
-use super::accessor::{Elements, component_size, unsigned};
-use super::container::{Document, MESHOPT_EXTENSIONS};
-use super::json::Primitive;
+use super::{
+    accessor::{Elements, component_size, unsigned},
+    container::{Document, MESHOPT_EXTENSIONS},
+    json::Primitive,
+};
 use crate::parallel;
 use crate::scene::report::{Fate, ImportReport};
 

@@ -1,20 +1,17 @@
 //! Container of a glTF file: GLB chunks, JSON, extensions, and the buffers and images beside it.
 
-use std::borrow::Cow;
-use std::collections::HashMap;
-use std::fmt::Display;
-use std::iter::successors;
-use std::ops::Range;
-use std::path::{Path, PathBuf};
+use std::{borrow::Cow, collections::HashMap, fmt::Display, iter::successors, ops::Range, path::Path, path::PathBuf};
 
 use percent_encoding::percent_decode_str;
 use serde::Deserialize;
 
 use super::json::{AnyVersion, Root, Texture};
 use super::material::GLTF_PARAMETERS;
-use crate::files::{Files, text_or_latin_1};
-use crate::model_error::ModelError;
-use crate::scene::report::{Fate, ImportReport};
+use crate::{
+    files::{Files, text_or_latin_1},
+    model_error::ModelError,
+    scene::report::{Fate, ImportReport},
+};
 
 /// The extensions of buffer views and buffers.
 pub(super) const MESHOPT_EXTENSIONS: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];

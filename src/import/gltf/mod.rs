@@ -19,18 +19,26 @@ use std::path::Path;
 
 use serde_json::Value as Json;
 
-pub use self::anisotropy::{Widths, gltf_from_widths, widths_from_gltf};
-pub use self::material::{GLTF_PARAMETERS, kept_keys};
+pub use self::{
+    anisotropy::{Widths, gltf_from_widths, widths_from_gltf},
+    material::{GLTF_PARAMETERS, kept_keys},
+};
 
-use self::assembly::assemble;
-use self::container::Document;
-use self::json::{Curve, Root, Scene};
-use self::material::Materials;
-use self::pose::Pose;
-use crate::files::Files;
-use crate::model_error::ModelError;
-use crate::scene::report::{Entry, Fate, ImportReport};
-use crate::scene::{Model, ModelOptions};
+use self::{
+    assembly::assemble,
+    container::Document,
+    json::{Curve, Root, Scene},
+    material::Materials,
+    pose::Pose,
+};
+use crate::{
+    files::Files,
+    model_error::ModelError,
+    scene::{
+        Model, ModelOptions,
+        report::{Entry, Fate, ImportReport},
+    },
+};
 
 /// Loads the contents of a .gltf or .glb file; `path` is named in messages.
 pub(super) fn load(path: &Path, files: Files, bytes: Vec<u8>, options: &ModelOptions) -> Result<Model, ModelError> {

@@ -5,11 +5,12 @@ use std::f64::consts::FRAC_PI_4;
 use glam::{DMat4, DVec3};
 use serde_json::Value as Json;
 
-use super::container::Document;
-use super::json::{Camera, Node, Root};
-use super::pose::{Pose, root_nodes, unit_rotation};
-use crate::scene::report::{Fate, ImportReport};
-use crate::scene::{LightKind, ModelCamera, ModelLens, ModelLight};
+use super::{
+    container::Document,
+    json::{Camera, Node, Root},
+    pose::{Pose, root_nodes, unit_rotation},
+};
+use crate::scene::{LightKind, ModelCamera, ModelLens, ModelLight, report::Fate, report::ImportReport};
 
 /// The most instances of one node.
 const INSTANCES_MAX: usize = 1 << 20;

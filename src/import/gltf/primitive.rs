@@ -2,13 +2,8 @@
 
 use glam::{DMat3, DMat4, DVec3, Vec2, Vec3, Vec4};
 
-use super::compressed::DracoPrimitive;
-use super::container::Document;
-use super::json::Primitive;
-use super::material::{Materials, UvUse};
-use crate::scene::mesh::Mesh;
-use crate::scene::report::{Fate, ImportReport};
-use crate::scene::transform::normal_matrix;
+use super::{compressed::DracoPrimitive, container::Document, json::Primitive, material::Materials, material::UvUse};
+use crate::scene::{mesh::Mesh, report::Fate, report::ImportReport, transform::normal_matrix};
 
 /// Relative imbalance of a surface's area vectors from which it counts as open.
 const OPEN: f64 = 0.01;

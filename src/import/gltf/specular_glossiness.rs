@@ -3,9 +3,11 @@
 //! Source: Khronos, KHR_materials_pbrSpecularGlossiness, "conversion between the workflows". The metalness is chosen so that
 //! both have the same brightness of diffuse and specular reflection, with dielectrics at 4 %.
 
-use crate::optics::tone::{linear_from_srgb, srgb_from_linear};
-use crate::optics::vector::{Vec3, vec3};
-use crate::scene::Texture;
+use crate::{
+    optics::tone::{linear_from_srgb, srgb_from_linear},
+    optics::vector::{Vec3, vec3},
+    scene::Texture,
+};
 
 /// Reflectance of dielectrics at normal incidence.
 pub(super) const DIELECTRIC: f64 = 0.04;

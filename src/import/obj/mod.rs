@@ -8,22 +8,27 @@ mod lines;
 mod map;
 mod table;
 
-use std::collections::HashMap;
-use std::path::Path;
+use std::{collections::HashMap, path::Path};
 
 pub use self::table::MTL_PARAMETERS;
 
-use self::lines::Material;
-use self::map::Map;
-use crate::fbx::polygons::{Broken, Look, Polygons};
-use crate::fbx::{options_of, progress_of, report_warnings, unread};
-use crate::files::Files;
-use crate::maps::{Maps, Part, grey, holds_heights, opacity_of};
-use crate::model_error::ModelError;
-use crate::scene::mesh::Mesh;
-use crate::scene::report::{Fate, ImportReport};
-use crate::scene::texture::TextureTarget;
-use crate::scene::{AlphaMode, Filter, Model, ModelObject, ModelOptions, Slot, TextureRef, Wrap};
+use self::{lines::Material, map::Map};
+use crate::{
+    fbx::{
+        options_of,
+        polygons::{Broken, Look, Polygons},
+        progress_of, report_warnings, unread,
+    },
+    files::Files,
+    maps::{Maps, Part, grey, holds_heights, opacity_of},
+    model_error::ModelError,
+    scene::{
+        AlphaMode, Filter, Model, ModelObject, ModelOptions, Slot, TextureRef, Wrap,
+        mesh::Mesh,
+        report::{Fate, ImportReport},
+        texture::TextureTarget,
+    },
+};
 
 /// Loads the contents of an OBJ file.
 pub(super) fn load(path: &Path, files: &Files, bytes: &[u8], options: &ModelOptions) -> Result<Model, ModelError> {

@@ -1,9 +1,11 @@
 //! Fate of each keyword of a `.mtl` library: the table in docs/FORMATS.md, from which the import report is made.
 
 use super::lines::{Material, numbers};
-use crate::file_parameter::{FileParameter, Goes};
-use crate::file_parameters;
-use crate::scene::report::{Fate, ImportReport};
+use crate::{
+    file_parameter::{FileParameter, Goes},
+    file_parameters,
+    scene::report::{Fate, ImportReport},
+};
 
 use Goes::{Nowhere, To};
 

@@ -8,27 +8,31 @@ mod tiff_files;
 pub(crate) use gpu::is_container;
 pub use shipped::shipped;
 
-use std::borrow::Cow;
-use std::fmt;
-use std::io::Cursor;
-use std::path::Path;
+use std::{borrow::Cow, fmt, io::Cursor, path::Path};
 
 use exr::meta::header::Header;
 use exr::prelude::{MetaData, ReadChannels, ReadLayers, ReadSpecificChannel, Vec2};
-use image::metadata::Orientation;
 use image::{
     DynamicImage, ImageBuffer, ImageDecoder as _, ImageError, ImageFormat, ImageReader, ImageResult, Limits, Rgba,
+    metadata::Orientation,
 };
 
-use crate::limits::{self, Budget};
-use crate::optics::primaries::{Chromaticities, Matrix, NoSpace, REC709, transformed};
-use crate::optics::tone::srgb_from_linear;
-use crate::optics::vector::vec3;
-use crate::panics::contained;
-use crate::scene::Texture;
-use crate::scene::report::{Fate, ImportReport};
-use crate::scene::texture::scale::{nearest_of_16, scaled_to};
-use crate::scene::texture::{TextureMean, texture_mean};
+use crate::{
+    limits,
+    limits::Budget,
+    optics::{
+        primaries::{Chromaticities, Matrix, NoSpace, REC709, transformed},
+        tone::srgb_from_linear,
+        vector::vec3,
+    },
+    panics::contained,
+    scene::{
+        Texture,
+        report::Fate,
+        report::ImportReport,
+        texture::{TextureMean, scale::nearest_of_16, scale::scaled_to, texture_mean},
+    },
+};
 
 /// Memory limit for decoding one image: 16 384 × 8 192 texels of 16 bits per channel take 1 GiB.
 pub(super) const DECODED_MAX: u64 = 2 << 30;

@@ -4,9 +4,11 @@
 use std::io::Cursor;
 
 use image::DynamicImage;
-use tiff::ColorType;
-use tiff::decoder::{Decoder, DecodingResult, Limits};
-use tiff::tags::Tag;
+use tiff::{
+    ColorType,
+    decoder::{Decoder, DecodingResult, Limits},
+    tags::Tag,
+};
 
 use super::light;
 

@@ -9,16 +9,19 @@ use std::path::Path;
 use glam::{DVec3, Vec2, Vec4};
 
 use self::rows::{Element, Property, Row, Rows};
-use crate::files::Files;
-use crate::model_error::ModelError;
-use crate::optics::tone::linear_from_srgb;
-use crate::optics::vector::vec3;
-use crate::picture::Encoded;
-use crate::polygon::Polygons;
-use crate::scene::mesh::Mesh;
-use crate::scene::report::{Fate, ImportReport};
-use crate::scene::texture::TextureTarget;
-use crate::scene::{Cancelled, Filter, Loading, Model, ModelOptions, Slot, TextureRef, Wrap};
+use crate::{
+    files::Files,
+    model_error::ModelError,
+    optics::{tone::linear_from_srgb, vector::vec3},
+    picture::Encoded,
+    polygon::Polygons,
+    scene::{
+        Cancelled, Filter, Loading, Model, ModelOptions, Slot, TextureRef, Wrap,
+        mesh::Mesh,
+        report::{Fate, ImportReport},
+        texture::TextureTarget,
+    },
+};
 
 /// Numbers of vertices and faces by all their names: place, normal, texture coordinates, colour.
 const NUMBERS: [&[&str]; 12] = [

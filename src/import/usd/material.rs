@@ -2,17 +2,20 @@
 
 use std::collections::HashMap;
 
-use openusd::sdf::{FromValueCast, Value};
-use openusd::usd::{Prim, Stage};
+use openusd::{sdf::FromValueCast, sdf::Value, usd::Prim, usd::Stage};
 
 use super::{End, Known, end, text_of};
-use crate::USD_PREVIEW_SURFACE;
-use crate::files::Files;
-use crate::maps::{Maps, Part};
-use crate::optics::fresnel::fresnel_f0;
-use crate::scene::report::{Fate, ImportReport};
-use crate::scene::texture::{TextureTarget, texture_mean};
-use crate::scene::{AlphaMode, Filter, ModelOptions, Slot, Texture, TextureRef, Wrap};
+use crate::{
+    USD_PREVIEW_SURFACE,
+    files::Files,
+    maps::{Maps, Part},
+    optics::fresnel::fresnel_f0,
+    scene::{
+        AlphaMode, Filter, ModelOptions, Slot, Texture, TextureRef, Wrap,
+        report::{Fate, ImportReport},
+        texture::{TextureTarget, texture_mean},
+    },
+};
 
 /// What other surfaces call what is read of them.
 const OTHERS: [(&str, &str); 7] = [

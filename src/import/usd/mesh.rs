@@ -3,17 +3,13 @@
 use std::collections::HashMap;
 
 use glam::{DVec3, Vec2, Vec3, Vec4};
-use openusd::sdf::Value;
-use openusd::usd::{Prim, TimeCode};
+use openusd::{sdf::Value, usd::Prim, usd::TimeCode};
 
-use super::material::Slots;
-use super::scene::value_at;
-use super::{kind, text_of};
-use crate::polygon::Polygons;
-use crate::scene::Loading;
-use crate::scene::mesh::Mesh;
-use crate::scene::report::{Fate, ImportReport};
-use crate::scene::texture::TextureTarget;
+use super::{kind, material::Slots, scene::value_at, text_of};
+use crate::{
+    polygon::Polygons,
+    scene::{Loading, mesh::Mesh, report::Fate, report::ImportReport, texture::TextureTarget},
+};
 
 /// Values, and which of them each corner has.
 struct Primvar<T> {

@@ -4,23 +4,25 @@ mod material;
 mod mesh;
 mod scene;
 
-use std::cell::RefCell;
-use std::collections::HashMap;
-use std::io::{self, Cursor, ErrorKind, Read as _};
-use std::path::Path;
-use std::rc::Rc;
+use std::{
+    cell::RefCell,
+    collections::HashMap,
+    io::{self, Cursor, ErrorKind, Read as _},
+    path::Path,
+    rc::Rc,
+};
 
 pub use openusd;
 
-use openusd::ar::{Asset, ResolvedPath, Resolver};
-use openusd::sdf::Value;
-use openusd::usd::{Attribute, Prim, Stage};
+use openusd::{
+    ar::{Asset, ResolvedPath, Resolver},
+    sdf::Value,
+    usd::{Attribute, Prim, Stage},
+};
 
 pub(crate) use self::scene::load;
 
-use crate::files::{Files, Import};
-use crate::panics::contained;
-use crate::scene::Loading;
+use crate::{files::Files, files::Import, panics::contained, scene::Loading};
 
 /// Deepest nesting of brackets in a file as text, of prims, and longest chain of connections.
 const DEPTH_MAX: usize = 256;

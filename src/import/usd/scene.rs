@@ -1,22 +1,24 @@
 //! The scene of a stage: a walk through its prims, with instances, cameras and lights, in metres and with Y up.
 
-use std::f64::consts::PI;
-use std::path::Path;
-use std::rc::Rc;
+use std::{f64::consts::PI, path::Path, rc::Rc};
 
 use glam::{DMat4, DQuat, DVec3};
-use openusd::schemas::geom::{Imageable, Xformable};
-use openusd::sdf::{Specifier, Value};
-use openusd::usd::{Attribute, Prim, SchemaBase, SchemaKind, Stage, TimeCode};
+use openusd::{
+    schemas::geom::{Imageable, Xformable},
+    sdf::{Specifier, Value},
+    usd::{Attribute, Prim, SchemaBase, SchemaKind, Stage, TimeCode},
+};
 
-use super::material::Slots;
-use super::mesh::read_mesh;
-use super::{DEPTH_MAX, Known, deep, kind, opened, text_of};
-use crate::assembly::{Assembly, camera_at, light_at};
-use crate::files::Files;
-use crate::model_error::ModelError;
-use crate::scene::report::{Fate, ImportReport};
-use crate::scene::{LightKind, Model, ModelCamera, ModelLens, ModelLight, ModelOptions};
+use super::{DEPTH_MAX, Known, deep, kind, material::Slots, mesh::read_mesh, opened, text_of};
+use crate::{
+    assembly::{Assembly, camera_at, light_at},
+    files::Files,
+    model_error::ModelError,
+    scene::{
+        LightKind, Model, ModelCamera, ModelLens, ModelLight, ModelOptions,
+        report::{Fate, ImportReport},
+    },
+};
 
 /// More prims than this are not shown: a small file could repeat any number.
 const PRIMS_MAX: usize = 1 << 20;

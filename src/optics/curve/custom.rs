@@ -1,8 +1,7 @@
 //! A curve drawn by hand: the density of D is linear between the nodes of a table.
 
 use super::*;
-use crate::optics::real::inlined;
-use crate::optics::table::{NODE_LENGTH, look_up_number};
+use crate::optics::{real::inlined, table::NODE_LENGTH, table::look_up_number};
 
 /// What is special about the curve.
 pub const TRAITS: CurveTraits = CurveTraits {

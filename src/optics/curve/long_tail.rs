@@ -1,8 +1,7 @@
 //! The curve D = −ln(1 − √ξ), without an edge.
 
 use super::*;
-use crate::optics::numeric::{expm1, log1p};
-use crate::optics::real::inlined;
+use crate::optics::{numeric::expm1, numeric::log1p, real::inlined};
 
 /// What is special about the curve.
 pub const TRAITS: CurveTraits = CurveTraits {

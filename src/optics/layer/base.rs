@@ -5,9 +5,11 @@
 //! total reflection.
 
 use super::*;
-use crate::optics::curve::Curve;
-use crate::optics::lobe::{Horizon, Lobe, raw_sample};
-use crate::optics::rough_diffuse::rough_diffuse;
+use crate::optics::{
+    curve::Curve,
+    lobe::{Horizon, Lobe, raw_sample},
+    rough_diffuse::rough_diffuse,
+};
 
 /// Rounding of a squared sine at the edge of the cone.
 pub const BASE_EDGE: f64 = 1.00001;

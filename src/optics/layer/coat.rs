@@ -9,14 +9,16 @@
 //! other coat is glTF's: its colour is that of every direction.
 
 use super::*;
-use crate::optics::albedo::{albedo_lookup, azimuth_place, rough_albedo_lookup};
-use crate::optics::coat_medium::{INNER_MAX, color_over, way_length};
-use crate::optics::curve::Curve;
-use crate::optics::frame::{frame_from_normal, frame_from_tangent};
-use crate::optics::fresnel::{fresnel, fresnel_dielectric, half_vector_cosine};
-use crate::optics::lobe::{Horizon, Lobe};
-use crate::optics::material::{COAT_ABSORBS, COAT_IS_GGX, COATS_BASE};
-use crate::optics::target::TextureTarget;
+use crate::optics::{
+    albedo::{albedo_lookup, azimuth_place, rough_albedo_lookup},
+    coat_medium::{INNER_MAX, color_over, way_length},
+    curve::Curve,
+    frame::{frame_from_normal, frame_from_tangent},
+    fresnel::{fresnel, fresnel_dielectric, half_vector_cosine},
+    lobe::{Horizon, Lobe},
+    material::{COAT_ABSORBS, COAT_IS_GGX, COATS_BASE},
+    target::TextureTarget,
+};
 
 /// The clear coat layer.
 #[derive(Debug)]

@@ -2,10 +2,12 @@
 //! mirrored direction that is passed on.
 
 use super::*;
-use crate::optics::fresnel::fresnel_left;
-use crate::optics::lobe::{Facets, Lobe};
-use crate::optics::material::by_index;
-use crate::optics::refraction::refracted_square;
+use crate::optics::{
+    fresnel::fresnel_left,
+    lobe::{Facets, Lobe},
+    material::by_index,
+    refraction::refracted_square,
+};
 
 inlined! {
     /// Lanes where a mirrored direction is sampled first and the rest is passed on: then all weights are 1, however often light

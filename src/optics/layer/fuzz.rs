@@ -6,9 +6,11 @@
 
 use super::base::base_shape;
 use super::*;
-use crate::optics::frame::{frame_from_tangent, local_from_world, world_from_local};
-use crate::optics::lobe::raw_sample;
-use crate::optics::numeric::normalize_or;
+use crate::optics::{
+    frame::{frame_from_tangent, local_from_world, world_from_local},
+    lobe::raw_sample,
+    numeric::normalize_or,
+};
 use std::f64::consts::{FRAC_1_PI, TAU};
 
 /// The least roughness that the fits are for.

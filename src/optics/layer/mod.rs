@@ -56,10 +56,12 @@ pub use shares::{LayerShare, Layers, material_layers};
 use specular::Specular;
 use transmission::Transmission;
 
-use super::frame::Frame;
-use super::lobe::{LobeSample, LobeShape};
-use super::material::{Material, Surface};
-use super::numeric::sampled_share;
+use super::{
+    frame::Frame,
+    lobe::{LobeSample, LobeShape},
+    material::{Material, Surface},
+    numeric::sampled_share,
+};
 use crate::named::named;
 use crate::optics::prelude::*;
 

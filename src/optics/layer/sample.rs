@@ -2,8 +2,7 @@
 
 use super::evaluate::lobe_of;
 use super::*;
-use crate::optics::lobe::{is_mirror, lobe_sample};
-use crate::optics::warp::split;
+use crate::optics::{lobe::is_mirror, lobe::lobe_sample, warp::split};
 
 /// A direction drawn from a material.
 #[derive(Clone, Copy, Debug)]

@@ -3,12 +3,12 @@
 use super::facet::{left_by_facet, mirrored_share, shares_facets};
 use super::transmission::transmission_estimate;
 use super::*;
-use crate::optics::albedo::{
-    ROUGH_ALBEDO_LENGTH, albedo_lookup, albedo_place, rough_albedo, rough_albedo_lookup, table_row,
+use crate::optics::{
+    albedo::{ROUGH_ALBEDO_LENGTH, albedo_lookup, albedo_place, rough_albedo, rough_albedo_lookup, table_row},
+    fresnel::{Fresnel, fresnel, fresnel_f0, half_vector_cosine},
+    refraction::refracted_square,
+    scattering::scattered_again,
 };
-use crate::optics::fresnel::{Fresnel, fresnel, fresnel_f0, half_vector_cosine};
-use crate::optics::refraction::refracted_square;
-use crate::optics::scattering::scattered_again;
 
 /// The specular lobe.
 #[derive(Debug)]

@@ -3,10 +3,9 @@
 
 use super::facet::{bends, left_by_facet, mirrored_share, shares_facets};
 use super::*;
-use crate::optics::fresnel::fresnel;
-use crate::optics::lobe::refracts_at_facets;
-use crate::optics::refraction::refracting_cosines;
-use crate::optics::scattering::interface_gain;
+use crate::optics::{
+    fresnel::fresnel, lobe::refracts_at_facets, refraction::refracting_cosines, scattering::interface_gain,
+};
 
 /// The refracting lobe.
 #[derive(Debug)]

@@ -2,9 +2,7 @@
 //! (Walter et al. 2007 show the two to be close).
 
 use super::*;
-use crate::optics::frame::world_from_local;
-use crate::optics::microfacet::distribution_weight;
-use crate::optics::numeric::{expm1, log1p};
+use crate::optics::{frame::world_from_local, microfacet::distribution_weight, numeric::expm1, numeric::log1p};
 
 /// Properties of the lobe.
 pub const TRAITS: LobeTraits = LobeTraits {

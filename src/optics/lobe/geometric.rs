@@ -5,11 +5,9 @@
 //! κ = R; `chord` has the density there.
 
 use super::*;
-use crate::optics::chord::chord_density;
-use crate::optics::curve::curve_distance;
-use crate::optics::frame::world_from_local;
-use crate::optics::numeric::normalize_or;
-use crate::optics::warp::uniform_sphere;
+use crate::optics::{
+    chord::chord_density, curve::curve_distance, frame::world_from_local, numeric::normalize_or, warp::uniform_sphere,
+};
 
 /// Properties of the lobe.
 pub const TRAITS: LobeTraits = LobeTraits {

@@ -2,9 +2,11 @@
 //! Source: Dupuy and Benyoub, "Sampling visible GGX normals with spherical caps", HPG 2023, listing 3.
 
 use super::*;
-use crate::optics::frame::world_from_local;
-use crate::optics::microfacet::{visible_density, visible_weight};
-use crate::optics::numeric::normalize_or;
+use crate::optics::{
+    frame::world_from_local,
+    microfacet::{visible_density, visible_weight},
+    numeric::normalize_or,
+};
 
 /// Properties of the lobe.
 pub const TRAITS: LobeTraits = LobeTraits {

@@ -2,9 +2,11 @@
 //! JCGT 2018: kept to be compared in time.
 
 use super::*;
-use crate::optics::frame::world_from_local;
-use crate::optics::microfacet::{visible_density, visible_weight};
-use crate::optics::numeric::normalize_or;
+use crate::optics::{
+    frame::world_from_local,
+    microfacet::{visible_density, visible_weight},
+    numeric::normalize_or,
+};
 
 /// Properties of the lobe: those of GGX, since only the sampling differs.
 pub const TRAITS: LobeTraits = super::ggx::TRAITS;

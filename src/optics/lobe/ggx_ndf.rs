@@ -2,9 +2,11 @@
 //! be compared in noise.
 
 use super::*;
-use crate::optics::frame::world_from_local;
-use crate::optics::microfacet::{distribution_weight, ggx_distribution};
-use crate::optics::numeric::normalize_or;
+use crate::optics::{
+    frame::world_from_local,
+    microfacet::{distribution_weight, ggx_distribution},
+    numeric::normalize_or,
+};
 
 /// Properties of the lobe.
 pub const TRAITS: LobeTraits = LobeTraits {

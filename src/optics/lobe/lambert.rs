@@ -1,8 +1,7 @@
 //! Lambert's lobe: density cosθ/π, drawn without a basis as the normal plus a uniform direction.
 
 use super::*;
-use crate::optics::numeric::normalize_or;
-use crate::optics::warp::uniform_sphere;
+use crate::optics::{numeric::normalize_or, warp::uniform_sphere};
 
 /// Properties of the lobe.
 pub const TRAITS: LobeTraits = LobeTraits {

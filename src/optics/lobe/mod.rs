@@ -8,10 +8,12 @@
 
 pub mod model;
 
-use super::curve::Curve;
-use super::frame::{Frame, local_from_world};
-use super::microfacet::{Alpha, facet, smith_g1_over_cosine};
-use super::refraction::{facet_density_factor, facet_mirror, facet_refracted, refracted, refracting_normal};
+use super::{
+    curve::Curve,
+    frame::{Frame, local_from_world},
+    microfacet::{Alpha, facet, smith_g1_over_cosine},
+    refraction::{facet_density_factor, facet_mirror, facet_refracted, refracted, refracting_normal},
+};
 use crate::named::named;
 use crate::optics::prelude::*;
 

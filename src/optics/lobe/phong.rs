@@ -4,8 +4,7 @@
 //! α = roughness². What falls below the surface is lost: the model's own loss.
 
 use super::*;
-use crate::optics::frame::{frame_from_normal, world_from_local};
-use crate::optics::numeric::{expm1, log1p};
+use crate::optics::{frame::frame_from_normal, frame::world_from_local, numeric::expm1, numeric::log1p};
 
 /// Properties of the lobe.
 pub const TRAITS: LobeTraits = LobeTraits {

@@ -1,9 +1,7 @@
 //! Colour grading before the tone curve: white balance, contrast, saturation.
 
 use super::LUMINANCE;
-use crate::optics::blackbody::blackbody_color;
-use crate::optics::primaries::{Matrix, rec709_adapted};
-use crate::optics::vector::Vec3;
+use crate::optics::{blackbody::blackbody_color, primaries::Matrix, primaries::rec709_adapted, vector::Vec3};
 
 /// Luminance that contrast leaves unchanged.
 const MIDDLE_GREY: f32 = 0.18;

@@ -1,13 +1,17 @@
 //! The numbers of the views.
 
 use super::{Axis, DiscMap, LinePlot, LobeView, MapPlot, Series, Solid, SolidPlot, ViewKind};
-use crate::analysis::sphere_grid::{Profile, Side, SphereGrid, rings};
-use crate::optics::curve::{curve_density, curve_distance_max};
-use crate::optics::lobe::microfacet_alpha;
-use crate::optics::lobe::model::{LobeModel, view_direction};
-use crate::optics::scattering::kept_energy;
-use crate::optics::vector::{Vec3, vec3};
-use crate::parallel;
+use crate::{
+    analysis::sphere_grid::{Profile, Side, SphereGrid, rings},
+    optics::{
+        curve::{curve_density, curve_distance_max},
+        lobe::microfacet_alpha,
+        lobe::model::{LobeModel, view_direction},
+        scattering::kept_energy,
+        vector::{Vec3, vec3},
+    },
+    parallel,
+};
 
 /// Pixels along a side of a map.
 const MAP_SIZE: usize = 300;

@@ -6,9 +6,7 @@ use std::fmt::Write as _;
 
 pub use compute::{lobe_view, slice_angles_deg};
 
-use crate::named::named;
-use crate::optics::lobe::Lobe;
-use crate::optics::vector::Vec3;
+use crate::{named::named, optics::lobe::Lobe, optics::vector::Vec3};
 
 named! {
     /// What of a lobe is shown.
@@ -118,7 +116,7 @@ pub struct LinePlot {
 
 impl LinePlot {
     /// A plot of lobes' values from 0 up.
-    pub(crate) fn of_lobes(title: String, x: Axis, label: &str, x_column: &'static str, series: Vec<Series>) -> Self {
+    pub fn of_lobes(title: String, x: Axis, label: &str, x_column: &'static str, series: Vec<Series>) -> Self {
         let mut plot = Self {
             title,
             x,

@@ -1,9 +1,6 @@
 //! The denoiser, fetched for the user: the official binaries of Open Image Denoise, as a Python package.
 
-use std::io;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
-use std::time::Duration;
+use std::{io, path::Path, path::PathBuf, process::Command, process::Stdio, time::Duration};
 
 use super::library::{Library, data_folder};
 

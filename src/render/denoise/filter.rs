@@ -1,14 +1,17 @@
 //! A safe wrapper of Open Image Denoise's filter.
 
-use std::ffi::{CStr, c_int, c_void};
-use std::ptr;
-use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
-use std::sync::atomic::Ordering::Relaxed;
+use std::{
+    ffi::{CStr, c_int, c_void},
+    ptr,
+    sync::Arc,
+    sync::atomic::{AtomicBool, Ordering::Relaxed},
+};
 
-use super::device_choice::{CPU, DenoiseDevice, kind_name};
-use super::functions::{Functions, Handle, message};
-use super::library_error::LibraryError;
+use super::{
+    device_choice::{CPU, DenoiseDevice, kind_name},
+    functions::{Functions, Handle, message},
+    library_error::LibraryError,
+};
 
 /// `OIDN_FORMAT_FLOAT3`.
 const FLOAT3: c_int = 3;

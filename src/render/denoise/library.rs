@@ -3,16 +3,15 @@
 //! The library is searched in the folder of [`FOLDER_VARIABLE`], and only there if it is set. Otherwise: beside the
 //! executable; in the data folder, where `scripts/setup` puts it; then by the system's loader.
 
-use std::ffi::OsStr;
-use std::path::{Path, PathBuf};
-use std::sync::Mutex;
+use std::{ffi::OsStr, path::Path, path::PathBuf, sync::Mutex};
 
-use super::device_choice::DenoiseDevice;
-use super::filter::Device;
-use super::functions::{Functions, one_line};
-use super::library_error::{FOLDER_VARIABLE, LibraryError, MIN_VERSION, NAME};
-use crate::panics::lock;
-use crate::render::MachineOptions;
+use super::{
+    device_choice::DenoiseDevice,
+    filter::Device,
+    functions::{Functions, one_line},
+    library_error::{FOLDER_VARIABLE, LibraryError, MIN_VERSION, NAME},
+};
+use crate::{panics::lock, render::MachineOptions};
 
 /// File name prefixes of the library's own dependencies, in load order. Loaded first if they lie beside it, because the
 /// loader does not search there.

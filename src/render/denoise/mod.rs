@@ -11,10 +11,7 @@ mod library;
 mod library_error;
 mod picture;
 
-use std::ffi::c_int;
-use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
-use std::time::Instant;
+use std::{ffi::c_int, sync::Arc, sync::atomic::AtomicBool, time::Instant};
 
 pub use device_choice::DenoiseDevice;
 use filter::{Device, Filter, QUALITY_FAST, QUALITY_HIGH};
@@ -23,9 +20,11 @@ pub use library_error::{FOLDER_VARIABLE, LibraryError};
 use picture::NoisyHalf;
 pub use picture::{Denoised, Noisy};
 
-use crate::analysis::denoised::{Colors, DenoisedHalves, Errors};
-use crate::document::Denoise;
-use crate::render::MachineOptions;
+use crate::{
+    analysis::denoised::{Colors, DenoisedHalves, Errors},
+    document::Denoise,
+    render::MachineOptions,
+};
 
 /// Pixels per filter run at most. Larger images are filtered in bands, to bound memory.
 const PIXELS_MAX: usize = 1 << 22;

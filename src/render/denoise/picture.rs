@@ -2,9 +2,11 @@
 
 use std::sync::Arc;
 
-use crate::analysis::{denoised::Colors, halves::Distance};
-use crate::job::film::{Film, Image, luminance};
-use crate::parallel;
+use crate::{
+    analysis::{denoised::Colors, halves::Distance},
+    job::film::{Film, Image, luminance},
+    parallel,
+};
 
 /// Luminance of middle grey in the filter's input, and the darkest luminance that counts.
 const KEY: f64 = 0.18;

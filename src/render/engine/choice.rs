@@ -3,10 +3,12 @@
 use std::sync::OnceLock;
 
 use super::{Engine, EngineChoice, EngineInfo, cpu, gpu};
-use crate::gpu::{AdapterKind, GpuAdapter, GpuDevice, GpuError, Traversal, scatter::Scatterer};
-use crate::job::scatter::{ScatterCloud, ScatterRequest};
-use crate::named::named;
-use crate::render::denoise::DenoiseDevice;
+use crate::{
+    gpu::{AdapterKind, GpuAdapter, GpuDevice, GpuError, Traversal, scatter::Scatterer},
+    job::scatter::{ScatterCloud, ScatterRequest},
+    named::named,
+    render::denoise::DenoiseDevice,
+};
 
 named! {
     /// Whether kernels use ray queries instead of our own traversal.
@@ -94,7 +96,7 @@ fn traversal(adapter: &GpuAdapter) -> (Traversal, &'static str) {
 }
 
 /// The device for single functions; `None` for the CPU, which `auto` uses without a hardware GPU.
-pub(crate) fn device_for_functions(choice: EngineChoice) -> Result<Option<GpuDevice>, GpuError> {
+pub fn device_for_functions(choice: EngineChoice) -> Result<Option<GpuDevice>, GpuError> {
     let open = |kind| {
         let adapter = GpuAdapter::find(kind)?;
         adapter.open(traversal(&adapter).0)

@@ -4,13 +4,14 @@ pub mod choice;
 
 use std::{fmt, sync::Arc, time::Duration};
 
-use crate::cpu::CpuEngine;
-use crate::gpu::{GpuDevice, GpuEngine, GpuError, Traversal};
-use crate::job::{Job, film::Film, tiles::Schedule};
-use crate::named::named;
+use crate::{
+    cpu::CpuEngine,
+    gpu::{GpuDevice, GpuEngine, GpuError, Traversal},
+    job::{Job, film::Film, tiles::Schedule},
+    named::named,
+};
 
-pub(crate) use choice::device_for_functions;
-pub use choice::{MachineOptions, RayQueries, Sampler};
+pub use choice::{MachineOptions, RayQueries, Sampler, device_for_functions};
 
 named! {
     /// The engine that a user asks for.
@@ -164,7 +165,7 @@ pub fn gpu(device: GpuDevice, reason: String) -> Result<(Engine, EngineInfo), Gp
 }
 
 /// Name of the CPU, if the system reports it.
-pub(crate) fn cpu_name() -> String {
+pub fn cpu_name() -> String {
     let text = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let name = text
         .lines()

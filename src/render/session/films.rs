@@ -3,15 +3,19 @@
 use std::{borrow::Cow, path::Path, sync::Arc};
 
 use super::{Session, SessionError};
-use crate::document::Document;
-use crate::job::features::Features;
-use crate::job::film::{Film, Image};
-use crate::render::denoise::Noisy;
-use crate::render::frame::Frame;
-use crate::render::light_layers::{LightLayer, light_layers, mixed};
-use crate::render::output::{self, Layers, Rendered};
-use crate::render::shown::FilmSource;
-use crate::render::sums::KeptFilm;
+use crate::{
+    document::Document,
+    job::features::Features,
+    job::film::{Film, Image},
+    render::{
+        denoise::Noisy,
+        frame::Frame,
+        light_layers::{LightLayer, light_layers, mixed},
+        output::{self, Layers, Rendered},
+        shown::FilmSource,
+        sums::KeptFilm,
+    },
+};
 
 impl Session {
     /// The film so far.

@@ -3,23 +3,26 @@
 mod films;
 mod recovery;
 
-use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::{sync::Arc, time::Duration, time::Instant};
 
-use super::convergence::{Convergence, Measurement, Pacing, Work, fewest_samples, mean_samples};
-use super::engine::{Engine, EngineChoice, EngineInfo, choice, gpu};
-use super::error::SessionError;
-use super::frame::FilmId;
-use super::memory;
-use super::progress::{Progress, StopReason};
-use super::workshop::Workshop;
-use crate::analysis::halves::Distance;
-use crate::compile::{self, Assets, Compiler, Reloaded};
-use crate::document::{Denoise, Document, RenderSettings, change::Change};
-use crate::gpu::{GpuAdapter, GpuDevice, GpuError, Moment, Traversal};
-use crate::job::Job;
-use crate::job::effect::{Decision, EffectId};
-use crate::scene::texture::UserTextureFile;
+use super::{
+    convergence::{Convergence, Measurement, Pacing, Work, fewest_samples, mean_samples},
+    engine::{Engine, EngineChoice, EngineInfo, choice, gpu},
+    error::SessionError,
+    frame::FilmId,
+    memory,
+    progress::{Progress, StopReason},
+    workshop::Workshop,
+};
+use crate::{
+    analysis::halves::Distance,
+    compile::{self, Assets, Compiler, Reloaded},
+    document::{Denoise, Document, RenderSettings, change::Change},
+    gpu::{GpuAdapter, GpuDevice, GpuError, Moment, Traversal},
+    job::Job,
+    job::effect::{Decision, EffectId},
+    scene::texture::UserTextureFile,
+};
 
 /// A session: a document, its assets, and the engine that renders it.
 pub struct Session {

@@ -1,10 +1,12 @@
 //! Recovery of a render when the GPU's device is lost.
 
 use super::Session;
-use crate::gpu::{AdapterKind, GpuAdapter, GpuEngine, GpuError, Moment};
-use crate::job::{film::Film, tiles::Schedule};
-use crate::render::engine::{Engine, cpu};
-use crate::render::workshop::Workshop;
+use crate::{
+    gpu::{AdapterKind, GpuAdapter, GpuEngine, GpuError, Moment},
+    job::{film::Film, tiles::Schedule},
+    render::engine::{Engine, cpu},
+    render::workshop::Workshop,
+};
 
 /// Largest number of reopenings of a lost device; one that is lost again counts as broken.
 const REPLACEMENTS: u32 = 3;

@@ -1,15 +1,17 @@
 //! The denoiser's thread. It takes the latest render to denoise and returns the result to the worker.
 
-use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
-use std::sync::atomic::Ordering::Relaxed;
+use std::sync::{Arc, atomic::AtomicBool, atomic::Ordering::Relaxed};
 
-use crate::document::{Denoise, DenoiseWhen, Document};
-use crate::panics::caught;
-use crate::render::background::{Background, Responder};
-use crate::render::denoise::{Denoised, Denoiser, LibraryError, Noisy};
-use crate::render::frame::Frame;
-use crate::render::progress::Progress;
+use crate::{
+    document::{Denoise, DenoiseWhen, Document},
+    panics::caught,
+    render::{
+        background::{Background, Responder},
+        denoise::{Denoised, Denoiser, LibraryError, Noisy},
+        frame::Frame,
+        progress::Progress,
+    },
+};
 
 /// Factor by which samples grow from one denoised image to the next.
 const GROWTH: u32 = 2;

@@ -8,32 +8,42 @@ mod picture;
 mod stage;
 mod thread;
 
-use std::io;
-use std::path::PathBuf;
-use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering::Relaxed};
-use std::sync::mpsc::{Sender, channel};
-use std::sync::{Arc, Mutex};
-use std::thread::JoinHandle;
-use std::time::{Duration, Instant};
+use std::{
+    io,
+    path::PathBuf,
+    sync::{
+        Arc, Mutex,
+        atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering::Relaxed},
+        mpsc::{Sender, channel},
+    },
+    thread::JoinHandle,
+    time::{Duration, Instant},
+};
 
 pub use picture::Picture;
 use thread::State;
 
-use super::convergence::Measurement;
-use super::engine::{EngineChoice, EngineInfo};
-use super::output::Layers;
-use super::priority::lower_thread_priority;
-use super::progress::Progress;
-use super::session::Session;
-use super::shown::Shown;
-use crate::analysis::halves::Distance;
-use crate::compile::Assets;
-use crate::document::Document;
-use crate::gpu::Moment;
-use crate::job::Job;
-use crate::panics::lock;
-use crate::scene::environment::{Environment, EnvironmentSource};
-use crate::scene::{Loading, Model, ModelOptions, ModelSource};
+use super::{
+    convergence::Measurement,
+    engine::{EngineChoice, EngineInfo},
+    output::Layers,
+    priority::lower_thread_priority,
+    progress::Progress,
+    session::Session,
+    shown::Shown,
+};
+use crate::{
+    analysis::halves::Distance,
+    compile::Assets,
+    document::Document,
+    gpu::Moment,
+    job::Job,
+    panics::lock,
+    scene::{
+        Loading, Model, ModelOptions, ModelSource,
+        environment::{Environment, EnvironmentSource},
+    },
+};
 
 /// Time for which dropping a worker waits for its thread.
 const SHUTDOWN_TIMEOUT: Duration = Duration::from_secs(2);

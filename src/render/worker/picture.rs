@@ -2,11 +2,12 @@
 
 use std::{ops::Deref, sync::Arc};
 
-use crate::document::{Document, ViewSettings};
-use crate::job::film::Image;
-use crate::render::display::display;
-use crate::render::frame::Frame;
-use crate::render::shown::{Scale, Shown};
+use crate::{
+    document::Document,
+    document::ViewSettings,
+    job::film::Image,
+    render::{display::display, frame::Frame, shown::Scale, shown::Shown},
+};
 
 /// A frame as it is shown: the image itself or a map of it.
 #[derive(Clone, Debug)]

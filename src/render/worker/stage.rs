@@ -1,7 +1,6 @@
 //! Resolutions of a submission: first a reduced one that is fast, then in steps up to the full one.
 
-use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::{sync::Arc, time::Duration, time::Instant};
 
 use super::{Pace, Submission};
 use crate::document::Document;

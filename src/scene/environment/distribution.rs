@@ -2,9 +2,11 @@
 
 use std::f64::consts::{PI, TAU};
 
-use crate::parallel;
-use crate::scene::inversion::{DRAW_BITS, Drawn, Share, drawn, find, shares};
-use crate::scene::memory::in_large_pages;
+use crate::{
+    parallel,
+    scene::inversion::{DRAW_BITS, Drawn, Share, drawn, find, shares},
+    scene::memory::in_large_pages,
+};
 
 /// Largest number of cells: 24 MiB of table. Finer cells gain nothing that a sample could show.
 const MAX_CELLS: u64 = 2048 * 1024;

@@ -18,10 +18,12 @@ use std::{fmt, path::PathBuf, str::FromStr, sync::OnceLock};
 use serde::{Deserialize, Serialize};
 
 use crate::optics::prelude::*;
-use crate::scene::alias::grid_places;
-use crate::scene::inversion::{draw_number, place_in, slot};
-use crate::scene::memory::{in_large_pages, prefetch};
-use crate::scene::path_text::path_of_text;
+use crate::scene::{
+    alias::grid_places,
+    inversion::{draw_number, place_in, slot},
+    memory::{in_large_pages, prefetch},
+    path_text::path_of_text,
+};
 
 pub use distribution::{Cell, Distribution};
 use distribution::{Luminances, Map};

@@ -1,8 +1,7 @@
 //! Thumbnails of environments for the panels.
 
 use super::{Environment, environment_direction, environment_radiance};
-use crate::optics::tone::{linear_from_srgb, srgb_from_linear};
-use crate::optics::vector::Vec3;
+use crate::optics::{tone::linear_from_srgb, tone::srgb_from_linear, vector::Vec3};
 
 /// Samples along each side of a thumbnail's pixel.
 const TAPS: u32 = 4;

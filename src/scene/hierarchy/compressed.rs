@@ -1,10 +1,6 @@
 //! The GPU's hierarchy: eight-wide nodes of 80 bytes (CWBVH, Ylitie, Karras and Laine 2017), by obvhs.
 
-use obvhs::aabb::Aabb;
-use obvhs::bvh2::Bvh2;
-use obvhs::bvh2::node::Bvh2Node;
-use obvhs::cwbvh::CwBvh;
-use obvhs::cwbvh::bvh2_to_cwbvh::bvh2_to_cwbvh;
+use obvhs::{aabb::Aabb, bvh2::Bvh2, bvh2::node::Bvh2Node, cwbvh::CwBvh, cwbvh::bvh2_to_cwbvh::bvh2_to_cwbvh};
 
 use super::tree::BoxedTree;
 

@@ -8,9 +8,11 @@ use glam::{DAffine3, DMat3, DVec3, Mat3A, Vec3A};
 
 use super::traverse::{BoxRay, ClosestHit, HitSink, Leaves, RELATIVE_ERROR, SingleRay, StackEntry, TriangleRay};
 use super::wide::{Block, Normals, WIDTH, Wide};
-use crate::optics::vector::Vec3;
-use crate::scene::intersect::{Hit, RayFrame, triangle_normal};
-use crate::scene::transform::normal_matrix;
+use crate::{
+    optics::vector::Vec3,
+    scene::intersect::{Hit, RayFrame, triangle_normal},
+    scene::transform::normal_matrix,
+};
 
 /// Relative error bound of a ray moved to a mesh's space and of corners moved out of it: some ten roundings of each.
 const PLACEMENT_ERROR: f32 = 1e-6;

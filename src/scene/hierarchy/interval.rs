@@ -4,9 +4,11 @@
 use crate::optics::real::inlined;
 use fearless_simd::{ExtractToken, Level, Simd, SimdBase, SimdMask, f32x8};
 
-use super::packet::{PACKET, Packet, PacketRays, load};
-use super::traverse::{INVERSE_MAX, RELATIVE_ERROR, Stack, StackEntry};
-use super::wide::{BLOCK, WIDTH, Wide};
+use super::{
+    packet::{PACKET, Packet, PacketRays, load},
+    traverse::{INVERSE_MAX, RELATIVE_ERROR, Stack, StackEntry},
+    wide::{BLOCK, WIDTH, Wide},
+};
 
 /// Entry points at most. Every packet visits all of them, so that more would not pay.
 const ENTRY_POINTS_MAX: usize = 6;

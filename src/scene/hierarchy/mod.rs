@@ -40,14 +40,11 @@ use std::sync::OnceLock;
 
 use fearless_simd::{Level, Simd};
 use glam::Vec3A;
-use obvhs::aabb::Aabb;
-use obvhs::cwbvh::CwBvh;
-use obvhs::cwbvh::node::CwBvhNode;
+use obvhs::{aabb::Aabb, cwbvh::CwBvh, cwbvh::node::CwBvhNode};
 
 pub use instances::{Bottom, Placement};
 pub use interval::EntryPoints;
-pub use packet::PacketHits;
-pub use packet::{OCTANTS, PACKET, Packet, ray_octant};
+pub use packet::{OCTANTS, PACKET, Packet, PacketHits, ray_octant};
 use tree::{BoxedTree, Tree};
 pub use wide::Wide;
 

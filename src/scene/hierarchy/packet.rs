@@ -8,8 +8,7 @@ use fearless_simd::{ExtractToken, Simd, SimdBase, SimdMask, f32x8, f32x16, mask3
 
 use super::traverse::{BoxRay, HitSink, INVERSE_MAX, RELATIVE_ERROR, SingleRay, StackEntry, TriangleRay};
 use super::wide::{Block, Node, Normals, WIDTH, Wide};
-use crate::optics::real::inlined;
-use crate::scene::Hit;
+use crate::{optics::real::inlined, scene::Hit};
 
 /// Rays per packet.
 pub const PACKET: usize = 16;

@@ -3,10 +3,12 @@
 
 use fearless_simd::{Level, Simd, SimdMask};
 
-use super::interval::{ChildId, EntryPoints, RayInterval};
-use super::packet::{PACKET, Packet, PacketHits, PacketRays, common_octant, load};
-use super::traverse::Stack;
-use super::wide::{BLOCK, Wide};
+use super::{
+    interval::{ChildId, EntryPoints, RayInterval},
+    packet::{PACKET, Packet, PacketHits, PacketRays, common_octant, load},
+    traverse::Stack,
+    wide::{BLOCK, Wide},
+};
 
 /// At or below this many active rays, they continue as single rays: testing eight boxes or triangles at a time is cheaper
 /// than a nearly empty packet.

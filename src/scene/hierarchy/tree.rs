@@ -1,7 +1,6 @@
 //! The binary tree from which both engines' hierarchies are made. Triangles are stored in the order of its leaves.
 
-use obvhs::aabb::Aabb;
-use obvhs::bvh2::Bvh2;
+use obvhs::{aabb::Aabb, bvh2::Bvh2};
 
 use super::triangle_box;
 use crate::parallel;

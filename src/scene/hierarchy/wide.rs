@@ -5,9 +5,11 @@ use glam::Vec3A;
 use obvhs::aabb::Aabb;
 
 use super::tree::{BoxedTree, Subtree, Tree};
-use crate::optics::vector::Vec3;
-use crate::scene::intersect::triangle_normal;
-use crate::scene::memory::{in_large_pages, prefetch, room_in_large_pages};
+use crate::{
+    optics::vector::Vec3,
+    scene::intersect::triangle_normal,
+    scene::memory::{in_large_pages, prefetch, room_in_large_pages},
+};
 
 /// Children per node, and triangles per leaf at most.
 pub const WIDTH: usize = 8;

@@ -1,7 +1,6 @@
 //! Means of texture maps.
 
-use crate::optics::{tone::linear_from_srgb, vector::Vec3};
-use crate::scene::model::Texture;
+use crate::{optics::tone::linear_from_srgb, optics::vector::Vec3, scene::model::Texture};
 
 /// Codes of 8 bits.
 const CODES: usize = 256;

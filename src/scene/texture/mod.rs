@@ -14,13 +14,15 @@ mod uses;
 use bytemuck::{Pod, Zeroable};
 
 use super::{geometry::Geometry, part::Vertex, triangle_normal};
-use crate::optics::frame::frame_from_tangent;
-use crate::optics::layer::fuzz::FUZZ_ROUGHNESS_MIN;
-use crate::optics::material::{MATCHED_NODES, Material, NO_TEXTURE, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY};
-use crate::optics::numeric::normalize_or;
 use crate::optics::prelude::*;
-use crate::optics::table::table_lookup;
-use crate::optics::target::TextureTarget as On;
+use crate::optics::{
+    frame::frame_from_tangent,
+    layer::fuzz::FUZZ_ROUGHNESS_MIN,
+    material::{MATCHED_NODES, Material, NO_TEXTURE, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY},
+    numeric::normalize_or,
+    table::table_lookup,
+    target::TextureTarget as On,
+};
 
 pub use crate::optics::target::{TextureTarget, TextureValues};
 pub use mean::{TextureMean, texture_mean};

@@ -1,19 +1,24 @@
 //! Packing of texture maps for the integrators.
 
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::{path::Path, path::PathBuf, sync::Arc};
 
-use super::mean::{TextureMean, texture_mean};
-use super::scale::{fraction, halved};
-use super::user::{UserTexture, UserTextures};
-use super::uses::{SlotUses, Use, flag, of_slot, of_user_texture};
-use super::{CHANNEL_SHIFT, IS_BOX, IS_FINE, IS_SRGB, TextureRecord};
-use crate::named::with_defaults;
-use crate::optics::material::{NO_TEXTURE, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY};
-use crate::optics::target::{TARGETS, TextureTarget, TextureValues};
-use crate::optics::tone::linear_from_srgb;
-use crate::optics::vector::{Vec3, vec3};
-use crate::scene::model::{AlphaMode, Model, Slot, Texture};
+use super::{
+    CHANNEL_SHIFT, IS_BOX, IS_FINE, IS_SRGB, TextureRecord,
+    mean::{TextureMean, texture_mean},
+    scale::{fraction, halved},
+    user::{UserTexture, UserTextures},
+    uses::{SlotUses, Use, flag, of_slot, of_user_texture},
+};
+use crate::{
+    named::with_defaults,
+    optics::{
+        material::{NO_TEXTURE, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY},
+        target::{TARGETS, TextureTarget, TextureValues},
+        tone::linear_from_srgb,
+        vector::{Vec3, vec3},
+    },
+    scene::model::{AlphaMode, Model, Slot, Texture},
+};
 
 /// Words before the first texel: the linear values of sRGB codes.
 const DECODED: usize = 256;

@@ -2,9 +2,11 @@
 
 use std::ops::Range;
 
-use crate::optics::tone::{linear_from_srgb, srgb_from_linear};
-use crate::optics::vector::{Vec3, vec3};
-use crate::scene::model::Texture;
+use crate::{
+    optics::tone::{linear_from_srgb, srgb_from_linear},
+    optics::vector::{Vec3, vec3},
+    scene::model::Texture,
+};
 
 /// A channel of a texel, in [0, 1]; `place` counts channels from the first texel on.
 pub(super) fn fraction(picture: &Texture, place: usize) -> f64 {

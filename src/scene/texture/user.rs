@@ -4,8 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use crate::named::{named, with_defaults};
-use crate::optics::target::TextureTarget;
+use crate::{named::named, named::with_defaults, optics::target::TextureTarget};
 
 /// The folder of texture maps that are part of the program, such as `shipped:/weave.png`. No file system has it.
 pub const SHIPPED: &str = "shipped:";

@@ -1,7 +1,9 @@
 //! Texture uses of slots: the model's maps, and users' maps in their place.
 
-use super::user::{TextureProjection, UserTexture};
-use super::{CHANNEL_SHIFT, IS_BOX, IS_NEAREST, IS_SECOND_SET, IS_SRGB, TURNS_NORMALS, TextureRecord, WRAP_SHIFT};
+use super::{
+    CHANNEL_SHIFT, IS_BOX, IS_NEAREST, IS_SECOND_SET, IS_SRGB, TURNS_NORMALS, TextureRecord, WRAP_SHIFT,
+    user::{TextureProjection, UserTexture},
+};
 use crate::optics::target::{TARGETS, TextureTarget};
 use crate::scene::model::{Filter, Slot, TextureRef};
 

@@ -4,8 +4,7 @@ use std::path::Path;
 
 use serde_json::Value as Json;
 
-use super::surface::{Surface, Takes};
-use super::{ExchangeError, Subject, Written, carried, shown};
+use super::{ExchangeError, Subject, Written, carried, shown, surface::Surface, surface::Takes};
 
 const TAKES: Takes = Takes {
     widths: Surface::disney_widths,

@@ -8,8 +8,7 @@ use std::path::Path;
 use serde_json::{Map, Value as Json};
 
 use super::{ExchangeError, ReadOptions, Subject};
-use crate::document::MaterialSettings;
-use crate::store::{file, preset};
+use crate::{document::MaterialSettings, store::file, store::preset};
 
 /// What stands before the parameters in a comment, and the name of the property elsewhere.
 pub const MARK: &str = "glossmith_material";

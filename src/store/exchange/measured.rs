@@ -2,15 +2,21 @@
 
 use std::path::Path;
 
-use super::report::{Entry, MaterialReport, Residual};
-use super::{ExchangeError, Subject, Written};
-use crate::analysis::fit::merl::{CELLS, FILE_LENGTH, SCALES};
-use crate::compile::compile;
-use crate::document::MaterialSettings;
-use crate::optics::layer::{material_evaluate, material_is_mirror, material_layers};
-use crate::optics::material::{Material, Surface};
-use crate::optics::vector::{Vec3, vec3};
-use crate::parallel;
+use super::{
+    ExchangeError, Subject, Written,
+    report::{Entry, MaterialReport, Residual},
+};
+use crate::{
+    analysis::fit::merl::{CELLS, FILE_LENGTH, SCALES},
+    compile::compile,
+    document::MaterialSettings,
+    optics::{
+        layer::{material_evaluate, material_is_mirror, material_layers},
+        material::{Material, Surface},
+        vector::{Vec3, vec3},
+    },
+    parallel,
+};
 
 /// Least cosine that reflectances are asked at: at 0 there is none.
 const COSINE_MIN: f64 = 1e-3;

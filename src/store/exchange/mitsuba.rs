@@ -1,13 +1,13 @@
 //! A scene for Mitsuba 3: a ball with the material in even light, its material to be taken from there.
 
-use std::collections::HashMap;
-use std::path::Path;
+use std::{collections::HashMap, path::Path};
 
-use super::surface::{Law, Surface, Takes};
-use super::xml::{HEAD, element, identifier, numbers};
-use super::{ExchangeError, Subject, Written, carried, shown};
-use crate::document::MaterialSettings;
-use crate::optics::fresnel::Fresnel;
+use super::{
+    ExchangeError, Subject, Written, carried, shown,
+    surface::{Law, Surface, Takes},
+    xml::{HEAD, element, identifier, numbers},
+};
+use crate::{document::MaterialSettings, optics::fresnel::Fresnel};
 
 /// The material that stands for another one there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

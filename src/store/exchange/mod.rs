@@ -21,18 +21,14 @@ use std::path::{Path, PathBuf};
 
 use self::report::{Entry, MaterialReport, Report};
 use self::surface::{Surface, Takes};
-use super::opened::{self, Opened};
-use super::preset;
-use super::replace::save_atomically;
-use super::{FileError, Loaded};
-use crate::document::{Document, ImportLobe, MaterialSettings};
-use crate::import::ModelError;
-use crate::import::endings::ending;
-use crate::scene::Loading;
-use crate::scene::path_text::path_of_text;
+use super::{FileError, Loaded, opened, opened::Opened, preset, replace::save_atomically};
+use crate::{
+    document::{Document, ImportLobe, MaterialSettings},
+    import::{ModelError, endings::ending},
+    scene::{Loading, path_text::path_of_text},
+};
 
-pub use self::materialx::{SURFACES, SurfaceKind};
-pub use self::snippet::Language;
+pub use self::{materialx::SURFACES, materialx::SurfaceKind, snippet::Language};
 
 /// What the files of a format have in them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,12 +2,14 @@
 
 use std::path::Path;
 
-use super::report::{EVERYTHING, Entry, MaterialReport};
-use super::{ExchangeError, ReadOptions, Subject, Written};
-use crate::import::endings::has_ending;
-use crate::store::opened::{self, Opened};
-use crate::store::preset::material_text;
-use crate::store::project::own_text;
+use super::{
+    ExchangeError, ReadOptions, Subject, Written,
+    report::{EVERYTHING, Entry, MaterialReport},
+};
+use crate::{
+    import::endings::has_ending,
+    store::{opened, opened::Opened, preset::material_text, project::own_text},
+};
 
 pub fn write(subject: &Subject, path: &Path) -> Result<Written, ExchangeError> {
     if has_ending(path, &["png"]) {

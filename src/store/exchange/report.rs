@@ -1,12 +1,10 @@
 //! What became of a material on its way into another program's format, as a value and in words.
 
-use std::fmt;
-use std::path::PathBuf;
+use std::{fmt, path::PathBuf};
 
 use serde::Serialize;
 
-use crate::document::MaterialSettings;
-use crate::scene::path_text;
+use crate::{document::MaterialSettings, scene::path_text};
 
 /// What became of a part of a material.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]

@@ -3,12 +3,15 @@
 
 use std::path::Path;
 
-use super::report::{Entry, MaterialReport};
-use super::{ExchangeError, Subject, Written, carried};
-use crate::document::MaterialSettings;
-use crate::optics::curve::{CUSTOM_INTERVALS, Curve};
-use crate::optics::lobe::{Horizon, Lobe, stretch_from_anisotropy};
-use crate::optics::table::NODE_LENGTH;
+use super::{ExchangeError, Subject, Written, carried, report::Entry, report::MaterialReport};
+use crate::{
+    document::MaterialSettings,
+    optics::{
+        curve::{CUSTOM_INTERVALS, Curve},
+        lobe::{Horizon, Lobe, stretch_from_anisotropy},
+        table::NODE_LENGTH,
+    },
+};
 
 /// A language of renderers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,17 +1,21 @@
 //! A material as other programs know it: microfacets with GGX over a diffuse or refracting base, under a coat.
 
 use super::report::{Entry, OWN_TEXTURES, Residual};
-use crate::document::import::ggx_under_texture;
-use crate::document::{CoatLobe, ImportLobe, MaterialSettings, PARAMETERS, TextureUse, parameter};
-use crate::matching::{lobe_of_material, nearest_ggx};
-use crate::optics::fresnel::{
-    Fresnel, FresnelTerms, fresnel, fresnel_dielectric, fresnel_f0, fresnel_metal, fresnel_schlick, weighted_ior,
+use crate::{
+    document::{CoatLobe, ImportLobe, MaterialSettings, PARAMETERS, TextureUse, import::ggx_under_texture, parameter},
+    matching::{lobe_of_material, nearest_ggx},
+    optics::{
+        fresnel::{
+            Fresnel, FresnelTerms, fresnel, fresnel_dielectric, fresnel_f0, fresnel_metal, fresnel_schlick,
+            weighted_ior,
+        },
+        lobe::{Lobe, Width, anisotropy_from_ratio, stretch_from_anisotropy},
+        material::coat_blur,
+        thin_film::FilmTerms,
+        vector::Vec3,
+    },
+    scene::texture::TextureTarget,
 };
-use crate::optics::lobe::{Lobe, Width, anisotropy_from_ratio, stretch_from_anisotropy};
-use crate::optics::material::coat_blur;
-use crate::optics::thin_film::FilmTerms;
-use crate::optics::vector::Vec3;
-use crate::scene::texture::TextureTarget;
 
 /// A material as other programs know it: both lobes are GGX, and what only Glossmith has is that of [`MaterialSettings::of_file`].
 pub type Surface = MaterialSettings;

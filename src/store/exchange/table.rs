@@ -1,12 +1,9 @@
 //! The specular lobe as a table: values and densities over directions.
 
-use std::fmt::Write as _;
-use std::path::Path;
+use std::{fmt::Write as _, path::Path};
 
-use super::report::{Entry, MaterialReport};
-use super::{ExchangeError, Subject, Written, carried};
-use crate::matching::lobe_of_material;
-use crate::optics::vector::vec3;
+use super::{ExchangeError, Subject, Written, carried, report::Entry, report::MaterialReport};
+use crate::{matching::lobe_of_material, optics::vector::vec3};
 
 /// Steps between the directions, degrees: of the view, of the light's angle to the normal and of its azimuth.
 const STEPS_DEG: [usize; 3] = [15, 3, 10];

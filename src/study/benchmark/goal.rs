@@ -7,16 +7,17 @@ use std::time::{Duration, Instant};
 
 use tempfile::TempDir;
 
-use super::report::EngineReport;
-use super::scene::Scene;
-use super::{Done, GOAL, Place, REFERENCE_SHARE, Run, default_scene, opened, turns};
-use crate::analysis::error::{colors, relative_mean_squared_error};
-use crate::document::{Denoise, Document};
-use crate::gpu::Traversal;
-use crate::job::film::Image;
-use crate::render::denoise::Denoiser;
-use crate::render::{EngineChoice, Session};
-use crate::study::{StudyError, UNLIMITED};
+use super::{
+    Done, GOAL, Place, REFERENCE_SHARE, Run, default_scene, opened, report::EngineReport, scene::Scene, turns,
+};
+use crate::{
+    analysis::error::{colors, relative_mean_squared_error},
+    document::{Denoise, Document},
+    gpu::Traversal,
+    job::film::Image,
+    render::{EngineChoice, Session, denoise::Denoiser},
+    study::{StudyError, UNLIMITED},
+};
 
 /// Unit of the rows; less is better.
 const SECONDS: (&str, bool) = ("s", false);

@@ -9,17 +9,17 @@ mod rate;
 pub mod report;
 pub mod scene;
 
-use std::io;
-use std::time::{Duration, Instant};
+use std::{io, time::Duration, time::Instant};
 
 use sysinfo::{MemoryRefreshKind, RefreshKind, System};
 use tempfile::TempDir;
 
 use super::{Steps, StudyError, Watch};
-use crate::document::Document;
-use crate::gpu::{AdapterKind, GpuAdapter, GpuError, Traversal};
-use crate::render::denoise::Library;
-use crate::render::{EngineChoice, Session, cpu_name};
+use crate::{
+    document::Document,
+    gpu::{AdapterKind, GpuAdapter, GpuError, Traversal},
+    render::{EngineChoice, Session, cpu_name, denoise::Library},
+};
 use goal::Goal;
 use report::{EngineReport, Machine, Report, SCHEMA, SCHEMA_VERSION};
 use scene::Scene;

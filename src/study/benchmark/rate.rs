@@ -2,11 +2,8 @@
 
 use std::time::Instant;
 
-use super::report::EngineReport;
-use super::{Case, Done, Place, Run, opened, turns};
-use crate::gpu::Traversal;
-use crate::render::Session;
-use crate::study::{StudyError, UNLIMITED};
+use super::{Case, Done, Place, Run, opened, report::EngineReport, turns};
+use crate::{gpu::Traversal, render::Session, study::StudyError, study::UNLIMITED};
 
 /// Steps with their units, of which more is better.
 const RATES: [(&str, &str); 3] = [

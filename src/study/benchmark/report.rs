@@ -1,8 +1,6 @@
 //! The benchmark's result: one schema for files, tables and comparisons.
 
-use std::fmt::Write as _;
-use std::io;
-use std::path::{Path, PathBuf};
+use std::{fmt::Write as _, io, path::Path, path::PathBuf};
 
 use serde::{Deserialize, Serialize};
 

@@ -1,21 +1,21 @@
 //! Scenes of the benchmark, as files that any renderer reads: a teapot under a sky with a small sun and two soft boxes, and a
 //! ground.
 
-use std::f64::consts::{PI, TAU};
-use std::fs::File;
-use std::io::{self, BufWriter, Write};
-use std::path::Path;
+use std::{
+    f64::consts::{PI, TAU},
+    fs::File,
+    io::{self, BufWriter, Write},
+    path::Path,
+};
 
 use glam::{DVec3, Vec3};
 
-use crate::document::{Document, MaterialSettings};
-use crate::optics::fresnel::Fresnel;
-use crate::optics::lobe::Lobe;
-use crate::parallel;
-use crate::scene::camera::PixelFilter;
-use crate::scene::environment::EnvironmentSource;
-use crate::scene::mesh::Mesh;
-use crate::scene::{ModelSource, teapot};
+use crate::{
+    document::{Document, MaterialSettings},
+    optics::{fresnel::Fresnel, lobe::Lobe},
+    parallel,
+    scene::{ModelSource, camera::PixelFilter, environment::EnvironmentSource, mesh::Mesh, teapot},
+};
 
 /// Segments of a patch of the teapot, and the names of the meshes by their numbers of triangles.
 const MESHES: [(u32, &str); 3] = [(9, "6k"), (28, "60k"), (90, "600k")];

@@ -3,19 +3,23 @@
 use std::sync::atomic::Ordering;
 
 use super::{HardCase, Stage, StudyError};
-use crate::compile::compile;
-use crate::cpu::probe::probe_material;
-use crate::document::{CoatLobe, Kind, MaterialSettings, PARAMETERS, Value};
-use crate::job::precision::{ERROR_BOUND, relative_error};
-use crate::job::probe::{MaterialQuestion, MaterialView, ProbeScene};
-use crate::optics::frame::{frame_from_normal, world_from_local};
-use crate::optics::lobe::{Horizon, Lobe, LobeShape, lobe_sample};
-use crate::optics::material::Material;
-use crate::optics::random::hash_bits;
-use crate::optics::vector::{Vec3, vec3};
-use crate::optics::warp::uniform_sphere;
-use crate::parallel;
-use crate::scene::surface::bent_normal;
+use crate::{
+    compile::compile,
+    cpu::probe::probe_material,
+    document::{CoatLobe, Kind, MaterialSettings, PARAMETERS, Value},
+    job::precision::{ERROR_BOUND, relative_error},
+    job::probe::{MaterialQuestion, MaterialView, ProbeScene},
+    optics::{
+        frame::{frame_from_normal, world_from_local},
+        lobe::{Horizon, Lobe, LobeShape, lobe_sample},
+        material::Material,
+        random::hash_bits,
+        vector::{Vec3, vec3},
+        warp::uniform_sphere,
+    },
+    parallel,
+    scene::surface::bent_normal,
+};
 
 /// Pairs a lobe: of a thorough run and of a quick one.
 const PAIRS: [usize; 2] = [1_000_000, 10_000];

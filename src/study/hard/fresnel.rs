@@ -2,9 +2,10 @@
 //! of weight, thickness and index; against Airy's sum of complex amplitudes in f64.
 
 use super::{Stage, StudyError};
-use crate::job::probe::{FresnelQuestion, ProbeScene};
-use crate::optics::fresnel::METALS;
-use crate::optics::thin_film::film_path;
+use crate::{
+    job::probe::{FresnelQuestion, ProbeScene},
+    optics::{fresnel::METALS, thin_film::film_path},
+};
 
 /// Cosines from grazing to head-on.
 const COSINES: [f32; 14] = [

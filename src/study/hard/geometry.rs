@@ -4,19 +4,19 @@
 use glam::{DVec3, Vec3, Vec4};
 use serde_json::json;
 
-use super::glb::Glb;
-use super::meshes::{add_square, model, needle, small_ball, spirals};
-use super::rays::{axis_rays, direction, edge_aim, leaks, leaving_rays, ray, unit};
-use super::stage::{mean_luminance, worst_pixel};
-use super::{Stage, StudyError};
-use crate::job::film::Film;
-use crate::optics::fresnel::Fresnel;
-use crate::optics::lobe::Horizon;
-use crate::optics::random::hash_bits;
-use crate::scene::environment::EnvironmentSource;
-use crate::scene::mesh::Mesh;
-use crate::scene::{Geometry, ModelSource, shapes, teapot};
-use crate::study::small_document;
+use super::{
+    Stage, StudyError,
+    glb::Glb,
+    meshes::{add_square, model, needle, small_ball, spirals},
+    rays::{axis_rays, direction, edge_aim, leaks, leaving_rays, ray, unit},
+    stage::{mean_luminance, worst_pixel},
+};
+use crate::{
+    job::film::Film,
+    optics::{fresnel::Fresnel, lobe::Horizon, random::hash_bits},
+    scene::{Geometry, ModelSource, environment::EnvironmentSource, mesh::Mesh, shapes, teapot},
+    study::small_document,
+};
 
 /// Largest difference of an image's mean under a change of scale or position: silhouettes by a rounding.
 const SAME_PICTURE: f64 = 1e-3;

@@ -4,8 +4,7 @@ use glam::Vec4;
 use serde_json::{Value, json};
 
 use super::{Stage, StudyError};
-use crate::scene::ModelSource;
-use crate::scene::mesh::Mesh;
+use crate::scene::{ModelSource, mesh::Mesh};
 
 /// A file in the making.
 #[derive(Default)]

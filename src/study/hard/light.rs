@@ -5,17 +5,20 @@ use std::f64::consts::{PI, TAU};
 use glam::DVec3;
 use serde_json::json;
 
-use super::glb::Glb;
-use super::stage::{mean_luminance, worst_pixel};
-use super::{Stage, StudyError};
-use crate::document::{AreaLight, Background, Document, MaterialSettings};
-use crate::job::Settings;
-use crate::optics::random::{path_state, random_pair};
-use crate::optics::vector::Vec3;
-use crate::scene::camera::{LENS_DIMENSION, PIXEL_DIMENSION, pixel_ray};
-use crate::scene::environment::{Environment, EnvironmentSource, environment_direction, environment_radiance};
-use crate::scene::{Geometry, ModelSource, shapes};
-use crate::study::small_document;
+use super::{Stage, StudyError, glb::Glb, stage::mean_luminance, stage::worst_pixel};
+use crate::{
+    document::{AreaLight, Background, Document, MaterialSettings},
+    job::Settings,
+    optics::random::{path_state, random_pair},
+    optics::vector::Vec3,
+    scene::{
+        Geometry, ModelSource,
+        camera::{LENS_DIMENSION, PIXEL_DIMENSION, pixel_ray},
+        environment::{Environment, EnvironmentSource, environment_direction, environment_radiance},
+        shapes,
+    },
+    study::small_document,
+};
 
 cases! {
     "light"

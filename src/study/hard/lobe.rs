@@ -2,14 +2,18 @@
 //! terms.
 
 use super::{Stage, StudyError};
-use crate::document::CustomCurve;
-use crate::job::probe::{LobeAnswer, LobeQuestion, ProbeScene};
-use crate::optics::curve::Curve;
-use crate::optics::frame::frame_from_normal;
-use crate::optics::lobe::{Horizon, Lobe, LobeShape, lobe_evaluate, lobe_middle};
-use crate::optics::vector::{Vec3, vec3};
-use crate::scene::surface::bent_normal;
-use crate::study::check::shapes;
+use crate::{
+    document::CustomCurve,
+    job::probe::{LobeAnswer, LobeQuestion, ProbeScene},
+    optics::{
+        curve::Curve,
+        frame::frame_from_normal,
+        lobe::{Horizon, Lobe, LobeShape, lobe_evaluate, lobe_middle},
+        vector::{Vec3, vec3},
+    },
+    scene::surface::bent_normal,
+    study::check::shapes,
+};
 
 /// Extreme random numbers, of 24 or 32 bits.
 const XI_ENDS: [f32; 4] = [0.0, 1.0 / 16_777_216.0, 1.0 / 4_294_967_296.0, 1.0 - 1.0 / 16_777_216.0];

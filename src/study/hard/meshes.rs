@@ -2,8 +2,7 @@
 
 use glam::{DVec3, Vec4};
 
-use crate::scene::mesh::{Mesh, plane_normal};
-use crate::scene::{Model, shapes};
+use crate::scene::{Model, mesh::Mesh, mesh::plane_normal, shapes};
 
 pub fn model(mesh: Mesh) -> Model {
     Model {

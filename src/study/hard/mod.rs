@@ -30,16 +30,11 @@ mod rays;
 mod stage;
 mod sums;
 
-use std::fmt::Write as _;
-use std::sync::Arc;
-use std::time::Instant;
+use std::{fmt::Write as _, sync::Arc, time::Instant};
 
-use super::check::Check;
-use crate::job::film::Image;
-use crate::render::{EngineChoice, EngineInfo};
+use super::{StudyError, check::Check};
+use crate::{job::film::Image, render::EngineChoice, render::EngineInfo};
 pub use stage::Stage;
-
-use super::StudyError;
 
 /// A situation where naive code fails.
 #[derive(Clone, Copy)]

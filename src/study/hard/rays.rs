@@ -2,13 +2,15 @@
 
 use glam::{DVec3, Vec3};
 
-use super::meshes::{add_square, cube, model};
-use super::{Stage, StudyError};
-use crate::job::probe::{NO_HIT, ProbeScene, RayAnswer, RayQuestion};
-use crate::optics::random::hash_bits;
-use crate::scene::surface::surface_at;
-use crate::scene::texture::Textures;
-use crate::scene::{Geometry, Hit, shapes};
+use super::{
+    Stage, StudyError,
+    meshes::{add_square, cube, model},
+};
+use crate::{
+    job::probe::{NO_HIT, ProbeScene, RayAnswer, RayQuestion},
+    optics::random::hash_bits,
+    scene::{Geometry, Hit, shapes, surface::surface_at, texture::Textures},
+};
 
 impl Stage {
     /// Number of rays to test for leaks.

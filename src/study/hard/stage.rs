@@ -1,22 +1,22 @@
 //! What hard cases are run on.
 
-use std::fs;
-use std::path::PathBuf;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::{
+    fs,
+    path::PathBuf,
+    sync::Arc,
+    sync::atomic::{AtomicBool, Ordering},
+};
 
 use tempfile::TempDir;
 
-use crate::document::Document;
-use crate::document::effect::EffectSwitches;
-use crate::import::environment;
-use crate::job::film::{Film, Image};
-use crate::render::output::{self, Rendered};
-use crate::render::{EngineChoice, EngineInfo, Session, SessionError};
-use crate::scene::environment::{Environment, EnvironmentSource};
-use crate::study::StudyError;
-use crate::study::check::STEP;
-use crate::study::probe::Prober;
+use crate::{
+    document::{Document, effect::EffectSwitches},
+    import::environment,
+    job::film::{Film, Image},
+    render::{EngineChoice, EngineInfo, Session, SessionError, output, output::Rendered},
+    scene::environment::{Environment, EnvironmentSource},
+    study::{StudyError, check::STEP, probe::Prober},
+};
 
 /// An engine, and a folder that goes with it.
 pub struct Stage {

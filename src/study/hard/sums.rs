@@ -3,19 +3,20 @@
 use glam::DVec3;
 use serde_json::json;
 
-use super::glb::Glb;
-use super::meshes::cube;
-use super::stage::mean_luminance;
-use super::{Stage, StudyError};
-use crate::cpu::probe::probe_random;
-use crate::document::{MaterialSettings, Strategy};
-use crate::job::probe::{ProbeScene, RandomQuestion};
-use crate::optics::fresnel::Fresnel;
-use crate::optics::random::{Sequence, hash_bits, path_state, random_pair, random_state};
-use crate::scene::ModelSource;
-use crate::scene::camera::{PIXEL_DIMENSION, pixel_ray};
-use crate::scene::environment::{EnvironmentSource, environment_local_from_world, environment_radiance};
-use crate::study::small_document;
+use super::{Stage, StudyError, glb::Glb, meshes::cube, stage::mean_luminance};
+use crate::{
+    cpu::probe::probe_random,
+    document::{MaterialSettings, Strategy},
+    job::probe::{ProbeScene, RandomQuestion},
+    optics::fresnel::Fresnel,
+    optics::random::{Sequence, hash_bits, path_state, random_pair, random_state},
+    scene::{
+        ModelSource,
+        camera::{PIXEL_DIMENSION, pixel_ray},
+        environment::{EnvironmentSource, environment_local_from_world, environment_radiance},
+    },
+    study::small_document,
+};
 
 cases! {
     "sums"

@@ -1,8 +1,10 @@
 //! Fresnel's equations and Schlick's approximation for the same material: equal along the normal.
 
-use crate::document::{Conductor, MaterialSettings};
-use crate::optics::fresnel::{Fresnel, fresnel_conductor};
-use crate::scene::texture::TextureTarget;
+use crate::{
+    document::{Conductor, MaterialSettings},
+    optics::fresnel::{Fresnel, fresnel_conductor},
+    scene::texture::TextureTarget,
+};
 
 /// Largest reflectance along the normal of a metal: at 1 its index would be infinite.
 const F0_MAX: f64 = 0.999;

@@ -5,20 +5,20 @@
 
 mod exact;
 
-use std::fmt;
-use std::str::FromStr;
+use std::{fmt, str::FromStr};
 
 use serde::{Serialize, Serializer};
 
-use crate::document::effect::{EFFECTS, Effect, EffectSwitches, Switch, without_what_is_off};
-use crate::document::{Denoise, Document, RenderSettings, Strategy, ViewSettings};
-use crate::job::effect::EffectId;
-use crate::job::plan::Plan;
-use crate::matching::{lobe_of_material, matched_lobe_and_curve};
-use crate::named::Named;
-use crate::optics::curve::Curve;
-use crate::optics::lobe::Lobe;
-use crate::optics::random::Sequence;
+use crate::{
+    document::{
+        Denoise, Document, RenderSettings, Strategy, ViewSettings,
+        effect::{EFFECTS, Effect, EffectSwitches, Switch, without_what_is_off},
+    },
+    job::{effect::EffectId, plan::Plan},
+    matching::{lobe_of_material, matched_lobe_and_curve},
+    named::Named,
+    optics::{curve::Curve, lobe::Lobe, random::Sequence},
+};
 
 pub use exact::{with_exact_fresnel, with_schlick};
 

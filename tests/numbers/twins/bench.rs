@@ -4,30 +4,36 @@ use std::sync::{LazyLock, OnceLock};
 
 use bytemuck::cast_slice;
 use glam::Vec2;
-use glossmith::gpu::geometry_arrays::GeometryArrays;
-use glossmith::gpu::layout::Globals;
-use glossmith::gpu::scene_group::{self, SceneGroup};
-use glossmith::gpu::{AdapterKind, GpuAdapter, GpuDevice, GpuError, Traversal};
-use glossmith::job::{BackgroundKind, Settings, Strategy};
-use glossmith::optics::albedo::{albedo_table, film_table, rough_albedo_table};
-use glossmith::optics::curve::{CUSTOM_INTERVALS, Curve, custom_table};
-use glossmith::optics::fresnel::Fresnel;
-use glossmith::optics::lobe::{Horizon, Lobe};
-use glossmith::optics::material::{
-    COATS_BASE, COMPENSATES, HOLDS_FILM, HOLDS_INTEGRALS, MATCHED_NODES, Material, NO_TEXTURE, OVER_AZIMUTH,
+use glossmith::{
+    gpu::{
+        AdapterKind, GpuAdapter, GpuDevice, GpuError, Traversal, geometry_arrays::GeometryArrays, layout::Globals,
+        scene_group, scene_group::SceneGroup,
+    },
+    job::{BackgroundKind, Settings, Strategy},
+    optics::{
+        albedo::{albedo_table, film_table, rough_albedo_table},
+        curve::{CUSTOM_INTERVALS, Curve, custom_table},
+        fresnel::Fresnel,
+        lobe::{Horizon, Lobe},
+        material::{
+            COATS_BASE, COMPENSATES, HOLDS_FILM, HOLDS_INTEGRALS, MATCHED_NODES, Material, NO_TEXTURE, OVER_AZIMUTH,
+        },
+        random::Sequence,
+        real::Scalar,
+        scattering::scattering_table,
+        table::append_table,
+        thin_film::film_path,
+        vector::vec3,
+    },
+    scene::{
+        Filter, Geometry, Model, ModelSource, Slot, Texture, TextureRef, Wrap,
+        camera::{Camera, PixelFilter},
+        environment,
+        environment::Environment,
+        light::{LightChoice, Lights, Sampled},
+        texture::{CHANNEL_SHIFT, IS_BOX, TURNS_NORMALS, TextureRecord, TextureTarget as On, Textures},
+    },
 };
-use glossmith::optics::random::Sequence;
-use glossmith::optics::real::Scalar;
-use glossmith::optics::scattering::scattering_table;
-use glossmith::optics::table::append_table;
-use glossmith::optics::thin_film::film_path;
-use glossmith::optics::vector::vec3;
-use glossmith::scene::camera::{Camera, PixelFilter};
-use glossmith::scene::environment::{self, Environment};
-use glossmith::scene::light::{LightChoice, Lights, Sampled};
-use glossmith::scene::texture::TextureTarget as On;
-use glossmith::scene::texture::{CHANNEL_SHIFT, IS_BOX, TURNS_NORMALS, TextureRecord, Textures};
-use glossmith::scene::{Filter, Geometry, Model, ModelSource, Slot, Texture, TextureRef, Wrap};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
 use super::harness::Rng;

@@ -1,11 +1,13 @@
 //! The curves D(ξ) and the Fresnel factor, for every entry of their registries.
 
-use glossmith::optics::curve::{Curve, curve_distance, curve_distance_max, curve_h};
-use glossmith::optics::fresnel::{
-    Fresnel, FresnelTerms, fresnel, fresnel_conductor, fresnel_dielectric, fresnel_f0, fresnel_left, fresnel_schlick,
-    half_vector_cosine,
+use glossmith::optics::{
+    curve::{Curve, curve_distance, curve_distance_max, curve_h},
+    fresnel::{
+        Fresnel, FresnelTerms, fresnel, fresnel_conductor, fresnel_dielectric, fresnel_f0, fresnel_left,
+        fresnel_schlick, half_vector_cosine,
+    },
+    thin_film::FilmTerms,
 };
-use glossmith::optics::thin_film::FilmTerms;
 
 use super::bench::{CUSTOM_CURVES, SCENE};
 use super::harness::{Case, Output, Rng, Value, check, inputs, twin};
@@ -108,9 +110,15 @@ fn fresnel_factors_agree() {
     )
     .output("fresnel(terms, cosine)", shares)
     .output("fresnel_left(terms, cosine, behind)", shares);
-    let films = Fresnel::ALL.iter().flat_map(|&model| [0, 1, 2].map(|films| (model, films)));
+    let films = Fresnel::ALL
+        .iter()
+        .flat_map(|&model| [0, 1, 2].map(|films| (model, films)));
     for (model, films) in films {
-        let name = format!("{}{}", model.name(), ["", ", filmed", ", thickly filmed"][films as usize]);
+        let name = format!(
+            "{}{}",
+            model.name(),
+            ["", ", filmed", ", thickly filmed"][films as usize]
+        );
         all = all.group(&name, move |rng, _| {
             let mut color = |high: f32| Value::Vector([(); 3].map(|()| high * rng.unit()));
             let (f0, tint, eta, k) = (color(1.0), color(1.0), color(4.0), color(8.0));

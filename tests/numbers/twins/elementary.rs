@@ -1,13 +1,15 @@
 //! Elementary functions, random numbers, warps and frames.
 
-use glossmith::optics::frame::{Frame, frame_from_normal, frame_from_tangent, local_from_world, world_from_local};
-use glossmith::optics::numeric::{expm1, log1p, normalize_or, sampled_share};
-use glossmith::optics::random::{
-    RandomState, Sequence, hash_bits, path_state, random_bits, random_pair, random_pair_bits, random_state,
-    scramble_from_low, sobol_second_reversed, unit_from_bits,
+use glossmith::optics::{
+    frame::{Frame, frame_from_normal, frame_from_tangent, local_from_world, world_from_local},
+    numeric::{expm1, log1p, normalize_or, sampled_share},
+    random::{
+        RandomState, Sequence, hash_bits, path_state, random_bits, random_pair, random_pair_bits, random_state,
+        scramble_from_low, sobol_second_reversed, unit_from_bits,
+    },
+    real::Scalar,
+    warp::{split, uniform_disc, uniform_sphere},
 };
-use glossmith::optics::real::Scalar;
-use glossmith::optics::warp::{split, uniform_disc, uniform_sphere};
 
 use super::harness::{Case, Output, Rng, Row, Value, check, inputs, twin};
 

@@ -1,10 +1,12 @@
 //! The environment's map and its sampling, and the camera's rays.
 
-use glossmith::optics::vector::{Vec3, vec3};
-use glossmith::scene::camera::{Camera, PixelFilter, camera_ray, filter_offset};
-use glossmith::scene::environment::{
-    environment_density, environment_local_from_world, environment_radiance, environment_sample, environment_uv,
-    environment_world_from_local,
+use glossmith::{
+    optics::vector::{Vec3, vec3},
+    scene::camera::{Camera, PixelFilter, camera_ray, filter_offset},
+    scene::environment::{
+        environment_density, environment_local_from_world, environment_radiance, environment_sample, environment_uv,
+        environment_world_from_local,
+    },
 };
 
 use super::bench::SCENE;

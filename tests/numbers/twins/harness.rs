@@ -2,9 +2,11 @@
 
 use std::fmt::Write;
 
-use glossmith::gpu::shader::link_with;
-use glossmith::optics::real::Scalar;
-use glossmith::optics::vector::{Vec3, vec3};
+use glossmith::{
+    gpu::shader::link_with,
+    optics::real::Scalar,
+    optics::vector::{Vec3, vec3},
+};
 use rayon::prelude::*;
 
 use super::bench::{Bench, bench};

@@ -1,9 +1,9 @@
 //! Sampling of triangles that emit: the teapot's many small ones and the ground's two large ones.
 
-use glossmith::optics::material::Material;
-use glossmith::optics::real::Scalar;
-use glossmith::optics::vector::vec3;
-use glossmith::scene::light::{Emitters, light_density, light_sample, spot_share};
+use glossmith::{
+    optics::{material::Material, real::Scalar, vector::vec3},
+    scene::light::{Emitters, light_density, light_sample, spot_share},
+};
 
 use super::bench::SCENE;
 use super::harness::{Case, Output, Value, check, inputs, twin};

@@ -1,18 +1,20 @@
 //! What the microfacet lobes share, and every lobe × curve × anisotropy: raw, and with what happens at the horizon.
 
-use glossmith::optics::curve::Curve;
-use glossmith::optics::frame::{Frame, frame_from_tangent};
-use glossmith::optics::fresnel::half_vector_cosine;
-use glossmith::optics::lobe::{
-    Horizon, Lobe, LobeShape, alpha_from_roughness, is_mirror, isotropic_alpha, lobe_evaluate, lobe_sample,
-    microfacet_alpha, raw_density, raw_sample, raw_weight, stretch_from_anisotropy,
+use glossmith::optics::{
+    curve::Curve,
+    frame::{Frame, frame_from_tangent},
+    fresnel::half_vector_cosine,
+    lobe::{
+        Horizon, Lobe, LobeShape, alpha_from_roughness, is_mirror, isotropic_alpha, lobe_evaluate, lobe_sample,
+        microfacet_alpha, raw_density, raw_sample, raw_weight, stretch_from_anisotropy,
+    },
+    microfacet::{
+        Alpha, Facet, distribution_weight, facet, ggx_distribution, smith_g1_over_cosine, smith_g2_over_cosine,
+        smith_length, visible_density, visible_weight,
+    },
+    real::Scalar,
+    vector::{Vec3, vec3},
 };
-use glossmith::optics::microfacet::{
-    Alpha, Facet, distribution_weight, facet, ggx_distribution, smith_g1_over_cosine, smith_g2_over_cosine,
-    smith_length, visible_density, visible_weight,
-};
-use glossmith::optics::real::Scalar;
-use glossmith::optics::vector::{Vec3, vec3};
 
 use super::bench::{CUSTOM_CURVES, SCENE, random_roughness};
 use super::harness::{Case, Output, Rng, Row, Value, check, inputs, twin};

@@ -1,16 +1,22 @@
 //! The layered material with real albedo tables, for every lobe.
 
-use glossmith::optics::albedo::{albedo_lookup, albedo_place, rough_albedo, rough_albedo_lookup};
-use glossmith::optics::layer::{Layer, MaterialNumbers, material_evaluate, material_layers, material_sample};
-use glossmith::optics::lobe::{Lobe, lobe_sample, raw_sample};
-use glossmith::optics::material::{Material, Surface};
-use glossmith::optics::real::Scalar;
-use glossmith::optics::vector::vec3;
-use glossmith::scene::surface::bent_normal;
+use glossmith::{
+    optics::{
+        albedo::{albedo_lookup, albedo_place, rough_albedo, rough_albedo_lookup},
+        layer::{Layer, MaterialNumbers, material_evaluate, material_layers, material_sample},
+        lobe::{Lobe, lobe_sample, raw_sample},
+        material::{Material, Surface},
+        real::Scalar,
+        vector::vec3,
+    },
+    scene::surface::bent_normal,
+};
 
-use super::bench::SCENE;
-use super::harness::{Case, Output, Rng, Row, Value, check, inputs, twin};
-use super::lobes::{View, read_view};
+use super::{
+    bench::SCENE,
+    harness::{Case, Output, Rng, Row, Value, check, inputs, twin},
+    lobes::{View, read_view},
+};
 
 /// Colours that a material multiplies by are about 1.
 const COLOUR: Output = Output::Vector(0.1);

@@ -1,13 +1,15 @@
 //! Snell's law, and what facets refract.
 
-use glossmith::optics::curve::Curve;
-use glossmith::optics::lobe::{Lobe, facet_weight, lobe_sample, lobe_view};
-use glossmith::optics::real::Mask;
-use glossmith::optics::refraction::{
-    facet_density_factor, facet_mirror, facet_refracted, refracted, refracted_square, refracting_cosines,
-    refracting_normal,
+use glossmith::optics::{
+    curve::Curve,
+    lobe::{Lobe, facet_weight, lobe_sample, lobe_view},
+    real::Mask,
+    refraction::{
+        facet_density_factor, facet_mirror, facet_refracted, refracted, refracted_square, refracting_cosines,
+        refracting_normal,
+    },
+    vector::Vec3,
 };
-use glossmith::optics::vector::Vec3;
 
 use super::harness::{Case, Output, Rng, Value, check, inputs, twin};
 use super::lobes::{DENSITY, SHAPE_AND_VIEW, Shape, View, WEIGHT, random_shape, read_shape, read_view, shape_and_view};

@@ -1,12 +1,14 @@
 //! Rays against one triangle, and the surface where they meet it.
 
 use glam::Vec3A;
-use glossmith::optics::material::Material;
-use glossmith::optics::real::Scalar;
-use glossmith::optics::vector::Vec3;
-use glossmith::scene::surface::{bent_normal, lifted_normal, rise_to_plane, surface_at};
-use glossmith::scene::texture::uvs_at;
-use glossmith::scene::{Hit, RayFrame, intersect_triangle};
+use glossmith::{
+    optics::{material::Material, real::Scalar, vector::Vec3},
+    scene::{
+        Hit, RayFrame, intersect_triangle,
+        surface::{bent_normal, lifted_normal, rise_to_plane, surface_at},
+        texture::uvs_at,
+    },
+};
 
 use super::bench::SCENE;
 use super::harness::{Case, Output, Rng, Row, Twin, Value, check, inputs, twin};

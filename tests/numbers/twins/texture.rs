@@ -1,10 +1,12 @@
 //! Textures: every wrap mode, filter and set of coordinates, and what they do to a material.
 
-use glossmith::optics::material::{FIELDS, Field, Material};
-use glossmith::optics::real::Scalar;
-use glossmith::optics::vector::Vec3;
-use glossmith::scene::texture::{
-    TextureTarget, Uvs, mapped_normal, opacity_at, texture_lookup, textured_material, wrapped,
+use glossmith::{
+    optics::{
+        material::{FIELDS, Field, Material},
+        real::Scalar,
+        vector::Vec3,
+    },
+    scene::texture::{TextureTarget, Uvs, mapped_normal, opacity_at, texture_lookup, textured_material, wrapped},
 };
 
 use super::bench::SCENE;

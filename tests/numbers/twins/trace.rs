@@ -1,9 +1,10 @@
 //! Rays against the teapot on its ground: WGSL's traversal of its own hierarchy, and ray queries, against the processor's of its.
 
-use glossmith::gpu::shader::link_with;
-use glossmith::gpu::{AdapterKind, GpuAdapter, Traversal};
-use glossmith::optics::vector::{Vec3, vec3};
-use glossmith::scene::Geometry;
+use glossmith::{
+    gpu::{AdapterKind, GpuAdapter, Traversal, shader::link_with},
+    optics::vector::{Vec3, vec3},
+    scene::Geometry,
+};
 use rayon::prelude::*;
 
 use super::bench::{Bench, SCENE, bench};

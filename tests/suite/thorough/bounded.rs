@@ -1,13 +1,10 @@
 //! What asks for large work by its size alone, or by many files together: it ends within seconds and a gigabyte, or with a
 //! message. Inputs are made here.
 
-use super::cli_support::Workplace;
-use super::gltf_builder::square;
+use super::{cli_support::Workplace, gltf_builder::square};
 use serde_json::{Value as Json, json};
-use std::fmt::Write as _;
-use std::io::Write as _;
-use zip::ZipWriter;
-use zip::write::SimpleFileOptions;
+use std::{fmt::Write as _, io::Write as _};
+use zip::{ZipWriter, write::SimpleFileOptions};
 
 const MANY: usize = 100_000;
 const QUICK: &str = "--engine cpu --size 8x8 --samples 1 --output a.exr";

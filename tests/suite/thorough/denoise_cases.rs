@@ -2,15 +2,18 @@
 
 use std::time::{Duration, Instant};
 
-use glossmith::analysis::halves::Halves;
-use glossmith::document::turntable::{Turn, turned};
-use glossmith::document::{Background, Denoise, Document};
-use glossmith::job::film::Image;
-use glossmith::render::StepDenoiser;
-use glossmith::render::denoise::{Denoiser, Library, Noisy};
-use glossmith::render::worker::{Pace, Worker};
-use glossmith::render::{EngineChoice, Session};
-use glossmith::scene::ModelSource;
+use glossmith::{
+    analysis::halves::Halves,
+    document::{Background, Denoise, Document, turntable::Turn, turntable::turned},
+    job::film::Image,
+    render::{
+        EngineChoice, Session, StepDenoiser,
+        denoise::{Denoiser, Library, Noisy},
+        worker::Pace,
+        worker::Worker,
+    },
+    scene::ModelSource,
+};
 
 use super::renders::{render, set};
 

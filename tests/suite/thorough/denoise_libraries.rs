@@ -1,7 +1,6 @@
 //! Libraries in the place of Open Image Denoise, made by the C compiler: those that cannot be used, and one with a GPU.
 
-use std::path::Path;
-use std::process::Command;
+use std::{path::Path, process::Command};
 
 use super::cli_support::Workplace;
 

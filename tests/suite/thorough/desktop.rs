@@ -1,13 +1,14 @@
 //! A person at a screen: the real program in its window under Xvfb, with keys and mouse from xdotool.
 
-use std::fs::File;
-use std::io::{BufRead as _, BufReader};
-use std::path::{Path, PathBuf};
-use std::process::{Child, Command, ExitStatus, Stdio};
-use std::time::{Duration, Instant};
+use std::{
+    fs::File,
+    io::{BufRead as _, BufReader},
+    path::{Path, PathBuf},
+    process::{Child, Command, ExitStatus, Stdio},
+    time::{Duration, Instant},
+};
 
-use glossmith::document::Document;
-use glossmith::store::load_document;
+use glossmith::{document::Document, store::load_document};
 use tempfile::TempDir;
 
 /// A slow machine has to open a window, compile and render.

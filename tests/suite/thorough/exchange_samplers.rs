@@ -2,13 +2,12 @@
 
 use std::process::Command;
 
-use glossmith::document::{CustomCurve, MaterialSettings};
-use glossmith::matching::lobe_of_material;
-use glossmith::optics::curve::Curve;
-use glossmith::optics::frame::frame_from_normal;
-use glossmith::optics::lobe::raw_sample;
-use glossmith::optics::vector::vec3;
-use glossmith::store::save_material;
+use glossmith::{
+    document::{CustomCurve, MaterialSettings},
+    matching::lobe_of_material,
+    optics::{curve::Curve, frame::frame_from_normal, lobe::raw_sample, vector::vec3},
+    store::save_material,
+};
 
 use crate::cli_support::Workplace;
 

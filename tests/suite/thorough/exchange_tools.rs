@@ -1,12 +1,12 @@
 //! Exported materials judged by the formats' own tools, which `scripts/setup test` installs.
 
-use std::path::PathBuf;
-use std::process::Command;
+use std::{path::PathBuf, process::Command};
 
-use glossmith::document::MaterialSettings;
-use glossmith::optics::lobe::Lobe;
-use glossmith::store::preset::command_line_name;
-use glossmith::store::{PRESETS, load_material, save_material};
+use glossmith::{
+    document::MaterialSettings,
+    optics::lobe::Lobe,
+    store::{PRESETS, load_material, preset::command_line_name, save_material},
+};
 
 use crate::cli_support::Workplace;
 

@@ -1,8 +1,10 @@
 //! Job templates, run by the standard's own command line with several workers.
 
-use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Stdio};
-use std::time::{Duration, Instant};
+use std::{
+    path::{Path, PathBuf},
+    process::{Child, Command, Stdio},
+    time::{Duration, Instant},
+};
 
 use super::exchange_tools::tools;
 use crate::cli_support::Workplace;

@@ -3,15 +3,15 @@
 
 use std::time::Duration;
 
-use glossmith::document::Document;
-use glossmith::document::effect::EffectSwitches;
-use glossmith::job::film::Film;
-use glossmith::optics::random::Sequence;
-use glossmith::render::{EngineChoice, Session};
-use glossmith::scene::environment::EnvironmentSource;
+use glossmith::{
+    document::{Document, effect::EffectSwitches},
+    job::film::Film,
+    optics::random::Sequence,
+    render::{EngineChoice, Session},
+    scene::environment::EnvironmentSource,
+};
 
-use super::random_documents::random_document;
-use super::support::Random;
+use super::{random_documents::random_document, support::Random};
 
 fn film(session: &mut Session, document: &Document) -> Film {
     session.submit(document).expect("built-in scenes");

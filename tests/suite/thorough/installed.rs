@@ -1,7 +1,6 @@
 //! `make install` and `make uninstall`: what lands where, and that nothing is left.
 
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::{path::Path, path::PathBuf, process::Command, process::Output};
 
 const ROOT: &str = crate::ROOT;
 

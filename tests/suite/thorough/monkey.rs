@@ -3,28 +3,33 @@
 //!
 //! `GLOSSMITH_MONKEY_SEED=7` plays episode 7 alone.
 
-use std::collections::{HashSet, VecDeque};
-use std::path::PathBuf;
-use std::sync::{Mutex, MutexGuard, Once, PoisonError};
-use std::time::{Duration, Instant};
+use std::{
+    collections::{HashSet, VecDeque},
+    path::PathBuf,
+    sync::{Mutex, MutexGuard, Once, PoisonError},
+    time::{Duration, Instant},
+};
 
 use egui_kittest::Harness;
-use glossmith::app::actions::{Action, Command};
-use glossmith::app::{App, Options, Resolution};
-use glossmith::document::{AreaLight, Document, Kind, PARAMETERS, Value};
-use glossmith::render::EngineChoice;
-use glossmith::scene::ModelSource;
-use glossmith::store::{PRESETS, save_document, save_material};
+use glossmith::{
+    app::{App, Options, Resolution, actions::Action, actions::Command},
+    document::{AreaLight, Document, Kind, PARAMETERS, Value},
+    render::EngineChoice,
+    scene::ModelSource,
+    store::{PRESETS, save_document, save_material},
+};
 use tempfile::TempDir;
 
-use super::cli_support::write_hdr;
-use super::displays::faults;
-use super::monkey_deeds::{Deed, Surroundings};
-use super::random_documents::random_document;
-use super::support::Random;
-use super::ui::{Editor, assert_same_controls, controls};
-use super::ui_hands::Hands as _;
-use super::ui_panels::write_textured_square;
+use super::{
+    cli_support::write_hdr,
+    displays::faults,
+    monkey_deeds::{Deed, Surroundings},
+    random_documents::random_document,
+    support::Random,
+    ui::{Editor, assert_same_controls, controls},
+    ui_hands::Hands as _,
+    ui_panels::write_textured_square,
+};
 
 /// Deeds of an episode: fewer than the steps that can be undone.
 const EPISODE: u64 = 200;

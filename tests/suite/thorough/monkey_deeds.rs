@@ -1,17 +1,16 @@
 //! What a monkey does at the window.
 
-use std::collections::HashSet;
-use std::hash::{DefaultHasher, Hash as _, Hasher as _};
-use std::path::PathBuf;
+use std::{
+    collections::HashSet,
+    hash::{DefaultHasher, Hash as _, Hasher as _},
+    path::PathBuf,
+};
 
-use egui::accesskit::{self, NodeId, Role};
-use egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, Vec2};
+use egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, Vec2, accesskit, accesskit::NodeId, accesskit::Role};
 use egui_kittest::kittest::NodeT as _;
-use glossmith::app::actions::{Action, Command};
-use glossmith::app::layout::Pane;
+use glossmith::app::{actions::Action, actions::Command, layout::Pane};
 
-use super::support::Random;
-use super::ui::{Editor, controls};
+use super::{support::Random, ui::Editor, ui::controls};
 
 /// Numbers that are set: ordinary, at the ends and beyond.
 const NUMBERS: [f64; 10] = [0.0, 1.0, 0.5, 0.03, -1.0, 7.3, 180.0, 1e9, -1e9, 1e-9];

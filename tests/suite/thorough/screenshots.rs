@@ -1,24 +1,24 @@
 //! Makes the screenshots of the book: of the whole window, each with its document inside, and of every panel with
 //! something in it for docs/PANELS.md. No tests: `scripts/pictures window panels` runs them.
 
-use std::path::Path;
-use std::time::{Duration, Instant};
+use std::{path::Path, time::Duration, time::Instant};
 
-use egui::Vec2;
-use egui::accesskit::Role;
+use egui::{Vec2, accesskit::Role};
 use egui_kittest::kittest::Queryable as _;
-use glossmith::app::actions::{Action, Command};
-use glossmith::app::layout::Pane;
-use glossmith::document::{Denoise, Document};
-use glossmith::scene::texture::TextureTarget;
-use glossmith::store::examples::EXAMPLES;
-use glossmith::store::picture::png_bytes;
-use glossmith::store::{material_by_name, save_document};
+use glossmith::{
+    app::actions::{Action, Command},
+    app::layout::Pane,
+    document::{Denoise, Document},
+    scene::texture::TextureTarget,
+    store::{examples::EXAMPLES, material_by_name, picture::png_bytes, save_document},
+};
 
-use super::docs::root;
-use super::ui::{Editor, request, see, see_label, settle, wait, window_of};
-use super::ui_hands::{Hands as _, press, type_path};
-use super::ui_study::race_strategies;
+use super::{
+    docs::root,
+    ui::{Editor, request, see, see_label, settle, wait, window_of},
+    ui_hands::{Hands as _, press, type_path},
+    ui_study::race_strategies,
+};
 
 /// What is docked together, and what the page is called.
 const PAGES: [(&str, &[Pane]); 5] = [

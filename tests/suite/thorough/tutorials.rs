@@ -5,10 +5,12 @@ use std::path::Path;
 use glossmith::document::Denoise;
 use serde_json::Value;
 
-use super::cli_support::{Workplace, write_hdr};
-use super::docs::text_of;
-use super::docs_commands::{arguments, commands};
-use super::gltf_builder::{glb, square};
+use super::{
+    cli_support::{Workplace, write_hdr},
+    docs::text_of,
+    docs_commands::{arguments, commands},
+    gltf_builder::{glb, square},
+};
 
 fn tutorial(name: &str) -> String {
     text_of(&Path::new("docs/tutorials").join(name))

@@ -1,16 +1,14 @@
 //! A person's session, from the files given at the start to what a crash left.
 
-use glossmith::document::{CameraSettings, MaterialSettings};
-use glossmith::optics::curve::Curve;
-use glossmith::scene::ModelSource;
-use glossmith::scene::environment::EnvironmentSource;
-use glossmith::store::picture::load_picture_document;
-use glossmith::store::{load_document, load_material};
+use glossmith::{
+    document::{CameraSettings, MaterialSettings},
+    optics::curve::Curve,
+    scene::{ModelSource, environment::EnvironmentSource},
+    store::{load_document, load_material, picture::load_picture_document},
+};
 use serde_json::json;
 
-use super::cli_support::write_hdr;
-use super::desktop::Desktop;
-use super::gltf_builder::{glb, square};
+use super::{cli_support::write_hdr, desktop::Desktop, gltf_builder::glb, gltf_builder::square};
 
 #[test]
 fn a_session_is_played_killed_and_recovered() {

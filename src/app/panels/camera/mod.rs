@@ -4,9 +4,11 @@ mod photographic;
 mod reference;
 
 use super::*;
-use crate::app::desk::PICTURE_SIZE;
-use crate::app::services::viewing::{Pick, Resolution};
-use crate::document::{Bookmark, range};
+use crate::{
+    desk::PICTURE_SIZE,
+    document::{Bookmark, range},
+    services::viewing::{Pick, Resolution},
+};
 
 /// Camera, view and render settings.
 #[derive(Default)]

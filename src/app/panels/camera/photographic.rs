@@ -1,8 +1,7 @@
 //! The camera in a photographer's terms, beside the values that are kept: focal length on a sensor, f-number, aspect.
 
 use super::*;
-use crate::document::CameraSettings;
-use crate::render::worker::Scene;
+use crate::{document::CameraSettings, render::worker::Scene};
 
 /// Sensors by their height in millimetres.
 const SENSORS: [(f64, &str, &str); 5] = [
@@ -29,29 +28,33 @@ const ASPECTS: [([u32; 2], &str); 7] = [
 pub fn show(ui: &mut Ui, desk: &mut Desk, sensor_mm: &mut Option<f64>) {
     let first = SENSORS[0].0;
     let height_mm = sensor_mm.get_or_insert(first);
-    let name = ["Sensor", "Sensor", "Sensor size for focal length only; doesn't change the image."];
+    let name = [
+        "Sensor",
+        "Sensor",
+        "Sensor size for focal length only; doesn't change the image.",
+    ];
     widgets::value_row(ui, name, height_mm, first, |ui, height_mm| {
         widgets::choice(ui, "sensor", height_mm, &SENSORS)
     });
     let height_mm = *height_mm;
-        let focal_mm = |fov_deg: f64| 0.5 * height_mm / (0.5 * fov_deg).to_radians().tan();
-        let fov_deg = |focal_mm: f64| 2.0 * (0.5 * height_mm / focal_mm).atan().to_degrees();
-        let range = focal_mm(*range::FOV_DEG.end())..=focal_mm(*range::FOV_DEG.start());
-        let present_mm = focal_mm(desk.document.camera.fov_deg);
-        let style = NumberStyle::plain(range, " mm", 0.005 * present_mm, 1);
-        let help = "The field of view as a lens on the sensor has it.";
-        let name = ["Focal length", "Focal length", help];
-        desk.row(
-            ui,
-            name,
-            |document| &mut document.camera.fov_deg,
-            |ui, fov| widgets::number_as(ui, fov, &style, focal_mm, fov_deg),
-        );
-        widgets::comes_and_goes(ui, |ui| f_number(ui, desk, focal_mm(desk.document.camera.fov_deg)));
-        let frames = ui.checkbox(&mut desk.shared.viewing.shows_safe_frames, "Safe frames");
-        frames.on_hover_text(
-            "Marks what every screen shows: actions within 93 %, titles within 90 % of the image (EBU R 95).",
-        );
+    let focal_mm = |fov_deg: f64| 0.5 * height_mm / (0.5 * fov_deg).to_radians().tan();
+    let fov_deg = |focal_mm: f64| 2.0 * (0.5 * height_mm / focal_mm).atan().to_degrees();
+    let range = focal_mm(*range::FOV_DEG.end())..=focal_mm(*range::FOV_DEG.start());
+    let present_mm = focal_mm(desk.document.camera.fov_deg);
+    let style = NumberStyle::plain(range, " mm", 0.005 * present_mm, 1);
+    let help = "The field of view as a lens on the sensor has it.";
+    let name = ["Focal length", "Focal length", help];
+    desk.row(
+        ui,
+        name,
+        |document| &mut document.camera.fov_deg,
+        |ui, fov| widgets::number_as(ui, fov, &style, focal_mm, fov_deg),
+    );
+    widgets::comes_and_goes(ui, |ui| f_number(ui, desk, focal_mm(desk.document.camera.fov_deg)));
+    let frames = ui.checkbox(&mut desk.shared.viewing.shows_safe_frames, "Safe frames");
+    frames.on_hover_text(
+        "Marks what every screen shows: actions within 93 %, titles within 90 % of the image (EBU R 95).",
+    );
 }
 
 /// Known once the model is, which says how large a bounding radius is.

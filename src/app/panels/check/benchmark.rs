@@ -1,10 +1,14 @@
 //! The benchmark: what `glossmith benchmark` does, as a table, and its result for the clipboard.
 
 use super::*;
-use crate::app::study::StudyWorker;
-use crate::render::EngineChoice;
-use crate::study::benchmark::report::{EngineReport, Report, number};
-use crate::study::benchmark::{BenchmarkOptions, SECONDS, benchmark};
+use crate::{
+    measuring::StudyWorker,
+    render::EngineChoice,
+    study::benchmark::{
+        BenchmarkOptions, SECONDS, benchmark,
+        report::{EngineReport, Report, number},
+    },
+};
 
 /// State of the section.
 #[derive(Default)]

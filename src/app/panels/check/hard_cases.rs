@@ -3,12 +3,13 @@
 use std::sync::Mutex;
 
 use super::*;
-use crate::app::kit::tile::pixels;
-use crate::document::ViewSettings;
-use crate::panics::lock;
-use crate::render::EngineChoice;
-use crate::render::display::display;
-use crate::study::hard::{HardRow, Stage, catalogue};
+use crate::{
+    document::ViewSettings,
+    kit::tile::pixels,
+    panics::lock,
+    render::{EngineChoice, display::display},
+    study::hard::{HardRow, Stage, catalogue},
+};
 
 /// Side of a case's image in points.
 const PICTURE_SIDE: f32 = 40.0;

@@ -9,10 +9,14 @@ use benchmark::BenchmarkState;
 use hard_cases::HardState;
 
 use super::*;
-use crate::app::study::{StudyWorker, engine};
-use crate::render::priority::work_apart;
-use crate::study::check::{Check, CheckOptions, GroupSummary, run, summaries};
-use crate::study::{StudyError, StudyProgress};
+use crate::{
+    measuring::{StudyWorker, engine},
+    render::priority::work_apart,
+    study::{
+        StudyError, StudyProgress,
+        check::{Check, CheckOptions, GroupSummary, run, summaries},
+    },
+};
 
 /// The checks, the hard cases and the benchmark.
 #[derive(Default)]

@@ -3,9 +3,11 @@
 use std::time::Duration;
 
 use super::*;
-use crate::app::kit::words::about;
-use crate::app::study::{StudyWorker, engine, small_document};
-use crate::study::ledger::{Ledger, LedgerOptions, ledger};
+use crate::{
+    kit::words::about,
+    measuring::{StudyWorker, engine, small_document},
+    study::ledger::{Ledger, LedgerOptions, ledger},
+};
 
 /// Longest side of the image that is measured on, pixels: what is true of the parts is true of the whole.
 const SIDE_MAX: u32 = 256;

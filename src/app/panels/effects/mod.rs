@@ -5,9 +5,11 @@ mod ledger;
 use ledger::LedgerState;
 
 use super::*;
-use crate::document::effect::{Effect, EffectSwitches, Switch};
-use crate::job::effect::Decision;
-use crate::study::ledger::LedgerEntry;
+use crate::{
+    document::effect::{Effect, EffectSwitches, Switch},
+    job::effect::Decision,
+    study::ledger::LedgerEntry,
+};
 
 /// Radius of the mark before an effect, points.
 const MARK_RADIUS: f32 = 3.5;

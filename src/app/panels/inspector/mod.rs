@@ -5,11 +5,15 @@ mod histogram;
 use histogram::Brightness;
 
 use super::*;
-use crate::app::kit::words::percent;
-use crate::app::services::look::middle;
-use crate::render::display::exposure;
-use crate::render::shown::{PixelFacts, luminance, stops_of};
-use crate::render::worker::Picture;
+use crate::{
+    kit::words::percent,
+    render::{
+        display::exposure,
+        shown::{PixelFacts, luminance, stops_of},
+        worker::Picture,
+    },
+    services::look::middle,
+};
 
 #[derive(Default)]
 pub struct InspectorPanel {

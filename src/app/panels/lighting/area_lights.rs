@@ -1,11 +1,13 @@
 //! The list of area lights, and a row for each of their parameters.
 
 use super::*;
-use crate::app::kit::parameter_row;
-use crate::app::lights::{View, put_in_view};
-use crate::app::services::viewing::Pick;
-use crate::document::{AreaLight, GroupName, LIGHT_PARAMETERS, range};
-use crate::optics::blackbody::{TEMPERATURES_K, blackbody_color, temperature_of_color};
+use crate::{
+    document::{AreaLight, GroupName, LIGHT_PARAMETERS, range},
+    kit::parameter_row,
+    lights::{View, put_in_view},
+    optics::blackbody::{TEMPERATURES_K, blackbody_color, temperature_of_color},
+    services::viewing::Pick,
+};
 
 /// What the buttons beside a light's name ask for.
 enum Asked {

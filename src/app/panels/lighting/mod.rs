@@ -6,12 +6,14 @@ mod preview;
 
 use self::preview::Preview;
 use super::*;
-use crate::app::kit::tile::Tile;
-use crate::app::services::pictures::Part;
-use crate::app::services::shelves::{environment_key, environment_label};
-use crate::document::{Background, GroundKind};
-use crate::render::thumbnails::Subject;
-use crate::scene::environment::EnvironmentSource;
+use crate::{
+    document::{Background, GroundKind},
+    kit::tile::Tile,
+    render::thumbnails::Subject,
+    scene::environment::EnvironmentSource,
+    services::pictures::Part,
+    services::shelves::{environment_key, environment_label},
+};
 
 /// Most files in the list.
 const FILES_MAX: usize = 6;

@@ -1,10 +1,12 @@
 //! The environment as it lies around the model: it turns with its rotation, and is dragged to turn it.
 
 use super::*;
-use crate::app::kit::drag::{Drag, LARGE_STEP, steps, wrapped_deg};
-use crate::app::services::shelves::environment_key;
-use crate::render::worker::Scene;
-use crate::scene::environment::brightened;
+use crate::{
+    kit::drag::{Drag, LARGE_STEP, steps, wrapped_deg},
+    render::worker::Scene,
+    scene::environment::brightened,
+    services::shelves::environment_key,
+};
 
 /// Radius of the ring around the brightest place, points.
 const RING: f32 = 7.0;

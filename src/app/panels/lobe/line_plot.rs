@@ -3,9 +3,11 @@
 use egui_plot::{LineStyle, Plot};
 
 use super::*;
-use crate::app::kit::charts::{height, line, powers, short, still};
-use crate::plot::lobe_view::{Axis, Series};
-use crate::plot::series_color;
+use crate::{
+    kit::charts::{height, line, powers, short, still},
+    plot::lobe_view::{Axis, Series},
+    plot::series_color,
+};
 
 /// Powers of ten that a logarithmic polar plot shows, at least.
 const POLAR_POWERS: f64 = 4.0;

@@ -8,14 +8,15 @@ use line_plot::{Radii, line_plot, plot_height};
 use matching::MatchState;
 
 use super::*;
-use crate::app::kit::tile::rgb_pixels;
-use crate::app::services::beside::Beside;
-use crate::matching::lobe_of_material;
-use crate::optics::curve::Curve;
-use crate::optics::lobe::Lobe;
-use crate::optics::lobe::model::LobeModel;
-use crate::plot::lobe_view::{LinePlot, LobeView, MapPlot, SolidPlot, ViewKind, lobe_view};
-use crate::plot::plot_picture;
+use crate::{
+    kit::tile::rgb_pixels,
+    matching::lobe_of_material,
+    optics::curve::Curve,
+    optics::lobe::{Lobe, model::LobeModel},
+    plot::lobe_view::{LinePlot, LobeView, MapPlot, SolidPlot, ViewKind, lobe_view},
+    plot::plot_picture,
+    services::beside::Beside,
+};
 
 /// Images are drawn this much larger than they are shown on a screen of one pixel a point.
 const ZOOM: f64 = 1.5;
@@ -88,7 +89,7 @@ impl Panel for LobePanel {
         };
         widgets::comes_and_goes(ui, |ui| view(ui, self, query));
         if self.other != Other::Nothing {
-            ui.add_space(crate::app::kit::theme::GAP);
+            ui.add_space(crate::kit::theme::GAP);
             let target = match self.other {
                 Other::Measured => desk.shared.measured.clone().map(matching::Source::File),
                 _ => other.map(matching::Source::Lobe),

@@ -6,14 +6,13 @@ mod textures;
 use std::cell::Cell;
 
 use super::*;
-use crate::app::kit::tile::Tile;
-use crate::app::kit::{keys, parameter_row};
-use crate::app::services::selection::Thing;
-use crate::document::material::Conductor;
-use crate::document::{MaterialSettings, PARAMETERS, Parameter};
-use crate::optics::fresnel::Fresnel;
-use crate::optics::lobe::Lobe;
-use crate::store::PRESETS;
+use crate::{
+    document::{MaterialSettings, PARAMETERS, Parameter, material::Conductor},
+    kit::{keys, parameter_row, tile::Tile},
+    optics::{fresnel::Fresnel, lobe::Lobe},
+    services::selection::Thing,
+    store::PRESETS,
+};
 
 /// Side of the ball before a slot's name, points.
 const BALL: f32 = 26.0;
@@ -81,7 +80,11 @@ impl Panel for MaterialPanel {
         groups.dedup();
         let measures = desk.shared.viewing.measures;
         // The switches of textures stand beside their images.
-        let is_shown = |parameter: &&Parameter| !parameter.key.ends_with("_texture") && (parameter.applies)(&before) && !is_for_measuring(parameter, &before, measures);
+        let is_shown = |parameter: &&Parameter| {
+            !parameter.key.ends_with("_texture")
+                && (parameter.applies)(&before)
+                && !is_for_measuring(parameter, &before, measures)
+        };
         for group in groups {
             let parameters = || PARAMETERS.iter().filter(|parameter| parameter.group == group);
             // What says nothing is folded whenever another material is shown; the user opens it for as long.
@@ -255,7 +258,10 @@ fn lobe(ui: &mut Ui, parameter: &Parameter, material: &mut MaterialSettings) -> 
     let mut choices = widgets::choices::<Lobe>();
     choices.retain(|(lobe, ..)| *lobe == material.lobe || !older.contains(lobe));
     let full = parameter.full_name();
-    let (name, default) = ([&*full, parameter.label, parameter.help], MaterialSettings::default().lobe);
+    let (name, default) = (
+        [&*full, parameter.label, parameter.help],
+        MaterialSettings::default().lobe,
+    );
     widgets::value_row(ui, name, &mut material.lobe, default, |ui, lobe| {
         widgets::choice(ui, &full, lobe, &choices)
     })

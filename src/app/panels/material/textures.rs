@@ -3,9 +3,10 @@
 use std::sync::LazyLock;
 
 use super::*;
-use crate::document::TEXTURE_PARAMETERS;
-use crate::scene::texture::TextureTarget;
-use crate::scene::{Model, Texture};
+use crate::{
+    document::TEXTURE_PARAMETERS,
+    scene::{Model, Texture, texture::TextureTarget},
+};
 
 /// Most texels to a side of the small copy that is shown.
 const SMALL_SIDE: u32 = 64;

@@ -3,18 +3,24 @@
 use std::path::{Path, PathBuf};
 
 use super::*;
-use crate::app::kit::tile::Tile;
-use crate::app::services::compare::Rival;
-use crate::app::services::pictures::Part;
-use crate::app::services::viewing::Pick;
-use crate::app::services::shelves::{environment_key, environment_label, preset_key};
-use crate::document::MaterialSettings;
-use crate::render::thumbnails::Subject;
-use crate::scene::environment::EnvironmentSource;
-use crate::store::PRESETS;
-use crate::store::exchange::FORMATS;
-use crate::store::preset::{SHIPPED, source_of_values};
-use crate::store::shelf::{Item, ItemKind};
+use crate::{
+    document::MaterialSettings,
+    kit::tile::Tile,
+    render::thumbnails::Subject,
+    scene::environment::EnvironmentSource,
+    services::{
+        compare::Rival,
+        pictures::Part,
+        shelves::{environment_key, environment_label, preset_key},
+        viewing::Pick,
+    },
+    store::{
+        PRESETS,
+        exchange::FORMATS,
+        preset::{SHIPPED, source_of_values},
+        shelf::{Item, ItemKind},
+    },
+};
 
 /// Things that stand together.
 pub struct Group {
@@ -146,9 +152,7 @@ impl Entry {
             is_current,
         };
         let is_favourite = desk.shared.shelves.kept.favourites.contains(&self.key);
-        let response = tile.show(ui, layout, (&menu_name, is_favourite), |ui| {
-            self.menu(ui, desk)
-        });
+        let response = tile.show(ui, layout, (&menu_name, is_favourite), |ui| self.menu(ui, desk));
         match &self.kind {
             EntryKind::Material(material) => {
                 if response.clicked() {

@@ -5,11 +5,10 @@ mod entries;
 use entries::{Entry, groups};
 
 use super::*;
-use crate::app::kit::keys;
-use crate::app::kit::tile::{self, Layout};
-use crate::app::services::library::Change;
-use crate::app::services::viewing::Pick;
-use crate::app::services::shelves::{LIST, SIDE_MAX};
+use crate::{
+    kit::{keys, tile, tile::Layout},
+    services::{library::Change, shelves::LIST, shelves::SIDE_MAX, viewing::Pick},
+};
 
 /// The materials and environments to start from.
 #[derive(Default)]
@@ -97,7 +96,6 @@ impl PresetsPanel {
             widgets::note(ui, "No preset of that name.");
         }
     }
-
 }
 
 /// One thing, or the field in which its name is typed.

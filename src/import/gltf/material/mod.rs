@@ -10,15 +10,21 @@ use serde_json::Value as Json;
 
 use self::pictures::{Made, Make, PictureKey, Reference, affine, without_missing};
 pub use self::table::{GLTF_PARAMETERS, kept_keys};
-use super::anisotropy::{convert_widths, widths_from_gltf};
-use super::container::Document;
-use super::json::Primitive;
-use super::specular_glossiness::{DIELECTRIC, Factors, convert, convert_textures};
-use crate::optics::layer::fuzz::fuzz_of_sheen;
-use crate::parallel;
-use crate::scene::report::{Fate, ImportReport};
-use crate::scene::texture::{TextureMean, TextureTarget, texture_mean};
-use crate::scene::{AlphaMode, ModelOptions, Slot, Texture, TextureRef};
+use super::{
+    anisotropy::{convert_widths, widths_from_gltf},
+    container::Document,
+    json::Primitive,
+    specular_glossiness::{DIELECTRIC, Factors, convert, convert_textures},
+};
+use crate::{
+    optics::layer::fuzz::fuzz_of_sheen,
+    parallel,
+    scene::{
+        AlphaMode, ModelOptions, Slot, Texture, TextureRef,
+        report::{Fate, ImportReport},
+        texture::{TextureMean, TextureTarget, texture_mean},
+    },
+};
 
 /// Largest index of refraction of a material.
 const IOR_MAX: f32 = 4.0;

@@ -1,18 +1,17 @@
 //! Textures of slots: images in use, their placement, and replacements of missing ones.
 
-use std::borrow::Cow;
-use std::collections::HashMap;
+use std::{borrow::Cow, collections::HashMap};
 
 use serde_json::Value as Json;
 
 use super::{Materials, Uvs, number};
-use crate::files::Import;
-use crate::gltf::container::Document;
-use crate::parallel;
-use crate::picture::Encoded;
-use crate::scene::report::Fate;
-use crate::scene::texture::TextureTarget;
-use crate::scene::{Filter, Slot, Texture, TextureRef, Wrap};
+use crate::{
+    files::Import,
+    gltf::container::Document,
+    parallel,
+    picture::Encoded,
+    scene::{Filter, Slot, Texture, TextureRef, Wrap, report::Fate, texture::TextureTarget},
+};
 
 /// An image used by slots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,9 +1,9 @@
 //! Textures of KHR_materials_sheen as those of the fuzz that looks like it ([`fuzz_of_sheen`]).
 
-use crate::optics::layer::fuzz::fuzz_of_sheen;
-use crate::optics::tone::{linear_from_srgb, srgb_from_linear};
-use crate::optics::vector::Vec3;
-use crate::scene::Texture;
+use crate::{
+    optics::{layer::fuzz::fuzz_of_sheen, tone::linear_from_srgb, tone::srgb_from_linear, vector::Vec3},
+    scene::Texture,
+};
 
 /// The weight, in all channels, and the colour of the fuzz that a texture of a sheen's colour gives, whose factor has this
 /// tint, at most 1.

@@ -3,10 +3,12 @@
 use serde_json::Value as Json;
 
 use super::numbers;
-use crate::file_parameter::{FileParameter, Goes};
-use crate::file_parameters;
-use crate::scene::Slot;
-use crate::scene::report::{Fate, ImportReport};
+use crate::{
+    file_parameter::{FileParameter, Goes},
+    file_parameters,
+    scene::Slot,
+    scene::report::{Fate, ImportReport},
+};
 
 const RADIANS_PER_DEGREE: f32 = std::f32::consts::PI / 180.0;
 /// A reference to a texture.

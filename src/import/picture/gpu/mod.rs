@@ -3,13 +3,11 @@
 
 mod masks;
 
-use std::borrow::Cow;
-use std::io::Read;
+use std::{borrow::Cow, io::Read};
 
 use ddsfile::{Caps2, D3DFormat, Dds, MiscFlag};
 use half::f16;
-use image::DynamicImage;
-use image::metadata::Orientation;
+use image::{DynamicImage, metadata::Orientation};
 use ruzstd::StreamingDecoder;
 
 use self::masks::Masks;

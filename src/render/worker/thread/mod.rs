@@ -2,28 +2,27 @@
 
 mod publish;
 
-use std::path::PathBuf;
-use std::sync::Arc;
-use std::sync::atomic::Ordering::Relaxed;
-use std::sync::mpsc::{Receiver, Sender};
-use std::time::{Duration, Instant};
+use std::{
+    path::PathBuf,
+    sync::{Arc, atomic::Ordering::Relaxed, mpsc::Receiver, mpsc::Sender},
+    time::Duration,
+    time::Instant,
+};
 
-use super::denoising::Denoising;
-use super::stage::Stage;
-use super::{Activity, Event, Level, Order, Scene, Shared, Snapshot, Submission};
-use crate::compile::Assets;
-use crate::document::{Change, Document, ViewSettings};
-use crate::gpu::GpuError;
-use crate::job::plan::Specialisation;
-use crate::panics::{caught, lock};
-use crate::render::engine::{EngineChoice, EngineKind};
-use crate::render::error::SessionError;
-use crate::render::frame::Frame;
-use crate::render::output::Layers;
-use crate::render::session::Session;
-use crate::render::shown::Shown;
-use crate::scene::environment::{EnvironmentEncoding, EnvironmentSource};
-use crate::scene::{ModelOptions, ModelSource};
+use super::{Activity, Event, Level, Order, Scene, Shared, Snapshot, Submission, denoising::Denoising, stage::Stage};
+use crate::{
+    compile::Assets,
+    document::{Change, Document, ViewSettings},
+    gpu::GpuError,
+    job::plan::Specialisation,
+    panics::caught,
+    panics::lock,
+    render::{
+        engine::EngineChoice, engine::EngineKind, error::SessionError, frame::Frame, output::Layers, session::Session,
+        shown::Shown,
+    },
+    scene::{ModelOptions, ModelSource, environment::EnvironmentEncoding, environment::EnvironmentSource},
+};
 
 /// Longest rendering step between two reads of the orders; and the step before the first image, which must not wait for
 /// later samples.

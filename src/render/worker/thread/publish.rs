@@ -3,12 +3,15 @@
 use std::{sync::Arc, time::Instant};
 
 use super::State;
-use crate::document::Denoise;
-use crate::render::error::SessionError;
-use crate::render::frame::Frame;
-use crate::render::shown::{PixelFacts, map_of_film, map_of_image};
-use crate::render::worker::picture::{Picture, displayed};
-use crate::render::worker::{Activity, Level};
+use crate::{
+    document::Denoise,
+    render::{
+        error::SessionError,
+        frame::Frame,
+        shown::{PixelFacts, map_of_film, map_of_image},
+        worker::{Activity, Level, picture::Picture, picture::displayed},
+    },
+};
 
 impl State<'_> {
     /// Publishes the current image again, after a change of display.

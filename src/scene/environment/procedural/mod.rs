@@ -6,8 +6,7 @@ mod soft_box;
 mod studio;
 
 use super::{Environment, MapError, texel_direction};
-use crate::optics::vector::Vec3;
-use crate::parallel;
+use crate::{optics::vector::Vec3, parallel};
 
 pub use rooms::{overcast, portrait, product, rim, warehouse};
 pub use sky::{SkyParams, sky, sun_direction, sun_irradiance};

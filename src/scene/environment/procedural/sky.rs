@@ -5,8 +5,7 @@ use std::f64::consts::PI;
 use hw_skymodel::rgb::{Channel, SkyParams as ModelParams, SkyState};
 use serde::{Deserialize, Serialize};
 
-use super::super::distribution::texel_solid_angle;
-use super::super::{Environment, MapError, environment_direction, texel_direction};
+use super::super::{Environment, MapError, distribution::texel_solid_angle, environment_direction, texel_direction};
 use super::texels_of;
 use crate::optics::vector::{Vec3, vec3};
 

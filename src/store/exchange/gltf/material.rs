@@ -2,14 +2,13 @@
 
 use serde_json::{Map, Value as Json, json};
 
-use crate::document::{MaterialSettings, parameter};
-use crate::import::{FileParameter, GLTF_PARAMETERS, gltf_from_widths};
-use crate::optics::layer::fuzz::sheen_of_fuzz;
-use crate::optics::target::TARGETS;
-use crate::scene::texture::TextureTarget as On;
-use crate::scene::{AlphaMode, TextureRef};
-use crate::store::exchange::carried;
-use crate::store::exchange::surface::Surface;
+use crate::{
+    document::{MaterialSettings, parameter},
+    import::{FileParameter, GLTF_PARAMETERS, gltf_from_widths},
+    optics::{layer::fuzz::sheen_of_fuzz, target::TARGETS},
+    scene::{AlphaMode, TextureRef, texture::TextureTarget as On},
+    store::exchange::{carried, surface::Surface},
+};
 
 /// The extension of stretched highlights.
 pub const ANISOTROPY: &str = "KHR_materials_anisotropy";

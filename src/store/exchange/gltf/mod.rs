@@ -8,16 +8,18 @@ use std::path::Path;
 use serde_json::{Map, Value as Json, json};
 
 use self::material::{ANISOTROPY, SlotTextures, UNLIT, extensions_used, material_json};
-use super::report::Entry;
-use super::surface::{Law, Surface, Takes};
-use super::{ExchangeError, ReadOptions, Subject, Written, carried, shown};
-use crate::document::of_model::{import_report, materials_of};
-use crate::document::{Document, ImportLobe, MaterialSettings};
-use crate::import::endings::has_ending;
-use crate::import::{Budget, gltf_from_widths, limits, load, load_with};
-use crate::scene::texture::{TextureTarget, texture_mean};
-use crate::scene::{Fate, Model, ModelSource, Slot, Wrap};
-use crate::store::picture::png_bytes;
+use super::{
+    ExchangeError, ReadOptions, Subject, Written, carried,
+    report::Entry,
+    shown,
+    surface::{Law, Surface, Takes},
+};
+use crate::{
+    document::{Document, ImportLobe, MaterialSettings, of_model::import_report, of_model::materials_of},
+    import::{Budget, endings::has_ending, gltf_from_widths, limits, load, load_with},
+    scene::{Fate, Model, ModelSource, Slot, Wrap, texture::TextureTarget, texture::texture_mean},
+    store::picture::png_bytes,
+};
 
 /// α is 1 there at most.
 fn shown_widths(surface: &Surface) -> [f32; 2] {

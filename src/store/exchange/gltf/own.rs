@@ -1,13 +1,16 @@
 //! Textures of the user's own as images of a glTF file, as far as the format can say how they are mapped.
 
-use crate::document::MaterialSettings;
-use crate::import::Budget;
-use crate::import::picture::read_texture;
-use crate::optics::tone::{linear_from_srgb, srgb_from_linear};
-use crate::optics::vector::vec3;
-use crate::scene::texture::{TextureProjection, TextureTarget, TextureValues, UserTexture, slots_with_coordinates};
-use crate::scene::{Filter, Model, Texture, TextureRef, Wrap};
-use crate::store::exchange::report::Entry;
+use crate::{
+    document::MaterialSettings,
+    import::{Budget, picture::read_texture},
+    optics::tone::{linear_from_srgb, srgb_from_linear},
+    optics::vector::vec3,
+    scene::{
+        Filter, Model, Texture, TextureRef, Wrap,
+        texture::{TextureProjection, TextureTarget, TextureValues, UserTexture, slots_with_coordinates},
+    },
+    store::exchange::report::Entry,
+};
 
 /// Puts a material's own textures into the model's slot where the file can have them, within the budget, and takes them
 /// from the material; what became of each.

@@ -1,8 +1,7 @@
 //! Metals by their reflection seen head-on and a colour towards the edge, as Standard Surface has them (Gulbrandsen 2014): the
 //! index and the absorption follow, and by these the tint at 82 degrees that Glossmith knows.
 
-use crate::optics::fresnel::{fresnel_conductor, fresnel_schlick};
-use crate::optics::vector::Vec3;
+use crate::optics::{fresnel::fresnel_conductor, fresnel::fresnel_schlick, vector::Vec3};
 
 /// The cosine at which edges are tinted.
 const COSINE: f64 = 1.0 / 7.0;

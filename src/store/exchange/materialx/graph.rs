@@ -1,14 +1,10 @@
 //! What inputs of a MaterialX document are worth: constants, images by their mean, and what the usual nodes compute of these.
 
-use std::cell::Cell;
-use std::collections::HashSet;
-use std::path::PathBuf;
+use std::{cell::Cell, collections::HashSet, path::PathBuf};
 
 use roxmltree::Node;
 
-use super::images::Images;
-use super::spaces::Space;
-use super::surfaces::SurfaceKind;
+use super::{images::Images, spaces::Space, surfaces::SurfaceKind};
 use crate::scene::texture::{TextureChannel, TextureSpace, UserTexture};
 
 /// Deepest chain of nodes that is followed.

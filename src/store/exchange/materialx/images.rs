@@ -1,13 +1,11 @@
 //! Images that a MaterialX document names.
 
-use std::cell::RefCell;
-use std::collections::HashMap;
-use std::path::{Path, PathBuf};
+use std::{cell::RefCell, collections::HashMap, path::Path, path::PathBuf};
 
-use crate::import::Budget;
-use crate::import::limits::Reach;
-use crate::import::picture::{FileMean, mean_of_file};
-use crate::scene::Loading;
+use crate::{
+    import::{Budget, limits::Reach, picture::FileMean, picture::mean_of_file},
+    scene::Loading,
+};
 
 /// Images that a document names: each is read once, within one budget.
 pub(super) struct Images<'p> {

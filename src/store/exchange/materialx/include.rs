@@ -5,9 +5,11 @@ use std::path::{Component, Path, PathBuf};
 
 use roxmltree::Node;
 
-use crate::import::limits::Reach;
-use crate::scene::Loading;
-use crate::store::exchange::xml::{self, escaped};
+use crate::{
+    import::limits::Reach,
+    scene::Loading,
+    store::exchange::{xml, xml::escaped},
+};
 
 /// Most files that one document includes, those that these include among them.
 const FILES_MAX: usize = 256;

@@ -2,10 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use crate::document::parameter;
-use crate::import::{FileParameter, Goes};
-use crate::store::exchange::report::Entry;
-use crate::store::exchange::surface::Surface;
+use crate::{
+    document::parameter,
+    import::{FileParameter, Goes},
+    store::exchange::{report::Entry, surface::Surface},
+};
 
 /// The inputs of a surface that a file sets, and what is lost of them.
 pub struct Inputs {

@@ -12,21 +12,21 @@ mod table;
 mod textures;
 mod units;
 
-use std::collections::HashMap;
-use std::path::Path;
+use std::{collections::HashMap, path::Path};
 
-pub(super) use self::read::{is_near, read, read_document};
 pub use self::surfaces::{SURFACES, SurfaceKind};
-pub(super) use self::surfaces::{as_open_pbr, written};
-pub(super) use self::table::OPEN_PBR;
+pub(super) use self::{
+    read::{is_near, read, read_document},
+    surfaces::{as_open_pbr, written},
+    table::OPEN_PBR,
+};
 
-use self::read::{normal_target, target_of};
-use self::surfaces::as_standard_surface;
-use self::textures::{Files, Nodes};
-use super::carried;
-use super::surface::{Surface, Takes};
-use super::xml::{HEAD, element, escaped, identifier, numbers};
-use super::{ExchangeError, Subject, Written, shown};
+use self::{read::normal_target, read::target_of, surfaces::as_standard_surface, textures::Files, textures::Nodes};
+use super::{
+    ExchangeError, Subject, Written, carried, shown,
+    surface::{Surface, Takes},
+    xml::{HEAD, element, escaped, identifier, numbers},
+};
 use crate::import::FileParameter;
 
 /// The attribute of a material that has the exact parameters.

@@ -5,21 +5,23 @@ use std::path::Path;
 
 use roxmltree::{Document, Node};
 
-use super::graph::{Shader, Unknown, Worth, child, shaders, source_of, worth};
-use super::images::Images;
-use super::include::whole_text;
-use super::inputs::Inputs;
-use super::surfaces::SurfaceKind;
-use super::units;
-use super::{CARRIER, write};
-use crate::document::{ImportLobe, MaterialSettings, PARAMETERS, Parameter, UserTextures};
-use crate::import::{FileParameter, Goes};
-use crate::optics::fresnel::Fresnel;
-use crate::scene::Loading;
-use crate::scene::texture::{SHIPPED, TextureChannel, TextureTarget, UserTexture};
-use crate::store::exchange::report::Entry;
-use crate::store::exchange::surface::Surface;
-use crate::store::exchange::{ExchangeError, ReadOptions, Subject, carried, xml};
+use super::{
+    CARRIER,
+    graph::{Shader, Unknown, Worth, child, shaders, source_of, worth},
+    images::Images,
+    include::whole_text,
+    inputs::Inputs,
+    surfaces::SurfaceKind,
+    units, write,
+};
+use crate::{
+    document::{ImportLobe, MaterialSettings, PARAMETERS, Parameter, UserTextures},
+    import::{FileParameter, Goes},
+    optics::fresnel::Fresnel,
+    scene::Loading,
+    scene::texture::{SHIPPED, TextureChannel, TextureTarget, UserTexture},
+    store::exchange::{ExchangeError, ReadOptions, Subject, carried, report::Entry, surface::Surface, xml},
+};
 
 /// The materials of a document.
 pub fn read(path: &Path, options: ReadOptions) -> Result<Subject, ExchangeError> {

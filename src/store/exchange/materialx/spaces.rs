@@ -1,9 +1,13 @@
 //! The colour spaces that MaterialX and USD name.
 
-use crate::optics::primaries::{Chromaticities, REC709, transformed};
-use crate::optics::tone::linear_from_srgb;
-use crate::optics::vector::Vec3;
-use crate::scene::texture::TextureMean;
+use crate::{
+    optics::{
+        primaries::{Chromaticities, REC709, transformed},
+        tone::linear_from_srgb,
+        vector::Vec3,
+    },
+    scene::texture::TextureMean,
+};
 
 /// What codes of a space are of light.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,15 +1,13 @@
 //! The kinds of surfaces that are read, each with its inputs as a surface of Glossmith's.
 
-use super::artistic::{edge_color, edge_tint};
-use super::inputs::Inputs;
-use super::table;
-use crate::document::parameter;
-use crate::import::{FileParameter, USD_PREVIEW_SURFACE, widths_from_gltf};
-use crate::optics::fresnel::fresnel_f0;
-use crate::optics::layer::fuzz::fuzz_of_sheen;
-use crate::optics::lobe::anisotropy_from_ratio;
-use crate::store::exchange::report::Entry;
-use crate::store::exchange::surface::{Law, Surface, Takes};
+use super::{artistic::edge_color, artistic::edge_tint, inputs::Inputs, table};
+use crate::{
+    document::parameter,
+    import::{FileParameter, USD_PREVIEW_SURFACE, widths_from_gltf},
+    optics::{fresnel::fresnel_f0, layer::fuzz::fuzz_of_sheen, lobe::anisotropy_from_ratio},
+    store::exchange::report::Entry,
+    store::exchange::surface::{Law, Surface, Takes},
+};
 
 /// A kind of surface that is read.
 #[derive(Debug)]

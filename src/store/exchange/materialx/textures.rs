@@ -1,15 +1,18 @@
 //! A material's own textures as nodes of MaterialX, and the files that go with a document.
 
-use std::collections::HashMap;
-use std::path::{Path, PathBuf};
+use std::{collections::HashMap, path::Path, path::PathBuf};
 
 use super::read::{normal_target, target_of};
-use crate::document::MaterialSettings;
-use crate::import::picture::mean_of_file;
-use crate::import::{Budget, FileParameter};
-use crate::scene::texture::{TextureProjection, TextureTarget, UserTexture};
-use crate::store::exchange::report::{Entry, MaterialReport, OWN_TEXTURES};
-use crate::store::exchange::xml::{element, escaped};
+use crate::{
+    document::MaterialSettings,
+    import::{Budget, FileParameter, picture::mean_of_file},
+    scene::texture::{TextureProjection, TextureTarget, UserTexture},
+    store::exchange::{
+        report::{Entry, MaterialReport, OWN_TEXTURES},
+        xml::element,
+        xml::escaped,
+    },
+};
 
 /// Files that are written beside a document, by where they come from.
 pub(super) struct Files {

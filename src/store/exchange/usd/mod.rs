@@ -3,17 +3,17 @@
 #[cfg(feature = "usd")]
 mod stage;
 
-use std::collections::HashMap;
-use std::fmt::Write as _;
-use std::path::Path;
+use std::{collections::HashMap, fmt::Write as _, path::Path};
 
-use super::materialx::{self, OPEN_PBR, as_open_pbr, written};
-use super::report::Entry;
-use super::surface::{Surface, Takes};
-use super::xml::{self, identifier, numbers};
-use super::{ExchangeError, ReadOptions, Subject, Written, carried, shown};
-use crate::document::MaterialSettings;
-use crate::import::FileParameter;
+use super::{
+    ExchangeError, ReadOptions, Subject, Written, carried,
+    materialx::{self, OPEN_PBR, as_open_pbr, written},
+    report::Entry,
+    shown,
+    surface::{Surface, Takes},
+    xml::{self, identifier, numbers},
+};
+use crate::{document::MaterialSettings, import::FileParameter};
 
 pub fn write(subject: &Subject, _path: &Path) -> Result<Written, ExchangeError> {
     let (mut taken, mut reports) = (HashMap::new(), Vec::new());

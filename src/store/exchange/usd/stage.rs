@@ -1,17 +1,20 @@
 //! Materials of a USD stage as documents of MaterialX, by whose tables they are read.
 
-use std::collections::BTreeSet;
-use std::fmt::Write as _;
+use std::{collections::BTreeSet, fmt::Write as _};
 
-use crate::document::MaterialSettings;
-use crate::import::usd::openusd::sdf::Value;
-use crate::import::usd::openusd::tf::Token;
-use crate::import::usd::openusd::usd::{Attribute, Prim, PrimPredicate, Stage};
-use crate::import::usd::{End, end, kind, text_of};
-use crate::store::exchange::carried;
-use crate::store::exchange::materialx::SurfaceKind;
-use crate::store::exchange::report::Entry;
-use crate::store::exchange::xml::escaped;
+use crate::{
+    document::MaterialSettings,
+    import::usd::{
+        End, end, kind,
+        openusd::{
+            sdf::Value,
+            tf::Token,
+            usd::{Attribute, Prim, PrimPredicate, Stage},
+        },
+        text_of,
+    },
+    store::exchange::{carried, materialx::SurfaceKind, report::Entry, xml::escaped},
+};
 
 /// Outputs of a material that name its surface. The first that is known is read.
 const SURFACES: [&str; 2] = ["outputs:surface", "outputs:mtlx:surface"];

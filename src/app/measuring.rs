@@ -1,22 +1,23 @@
 //! What the panels that measure share: a study beside the window, which can be stopped and shows how far it has come.
 
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::{Duration, Instant};
+use std::{
+    sync::Arc,
+    sync::atomic::{AtomicBool, Ordering},
+    time::{Duration, Instant},
+};
 
 use egui::Ui;
 
-use crate::app::actions::Command;
-use crate::app::desk::Desk;
-use crate::app::kit::{
-    start_stop::{Pressed, start_or_stop},
-    widgets,
-    words::time_left,
+use crate::{
+    actions::Command,
+    desk::Desk,
+    document::Change,
+    document::Document,
+    kit::{start_stop::Pressed, start_stop::start_or_stop, widgets, words::time_left},
+    render::EngineChoice,
+    services::beside::Beside,
+    study::{StudyError, StudyProgress, Watch},
 };
-use crate::app::services::beside::Beside;
-use crate::document::{Change, Document};
-use crate::render::EngineChoice;
-use crate::study::{StudyError, StudyProgress, Watch};
 
 /// How often what is left is updated.
 const REPORT_INTERVAL: Duration = Duration::from_millis(500);
