@@ -110,10 +110,10 @@ pub fn add_import(log: &mut Vec<Entry>, name: &str, report: &ImportReport) {
         [first, rest @ ..] => format!(", in {first} and {} more", rest.len()),
     };
     let text = format!("{name}: {}{parts} – {meaning}.{more}", worst.what);
-    let told = match worst.fate {
+    let entry = match worst.fate {
         Fate::Used | Fate::Approximated => Entry::done(text),
         _ => Entry::new(Level::Warning, text),
     };
     let offer = Some(Offer::ImportReport);
-    add(log, Entry { offer, ..told });
+    add(log, Entry { offer, ..entry });
 }

@@ -72,8 +72,11 @@ fn unpacked(package: &[u8], inner: &str) -> io::Result<Vec<u8>> {
 
 /// Refuses a text that is nested as no exporter nests it: it would exhaust the stack.
 fn check_depth(bytes: &[u8]) -> io::Result<()> {
+    if !bytes.starts_with(b"#usda") {
+        return Ok(());
+    }
     let mut depth = 0_usize;
-    for byte in bytes.iter().filter(|_| bytes.starts_with(b"#usda")) {
+    for byte in bytes {
         match byte {
             b'{' | b'(' | b'[' => depth += 1,
             b'}' | b')' | b']' => depth = depth.saturating_sub(1),

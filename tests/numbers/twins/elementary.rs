@@ -141,6 +141,25 @@ fn elementary_functions_agree() {
     );
 }
 
+fn put_state<T: Scalar>(row: &mut Row<'_, T>, state: RandomState) {
+    for bits in [state.key, state.sample, state.sequence as u32] {
+        row.put_bits(bits);
+    }
+}
+
+/// Counters as they come, and any bits.
+fn counter(rng: &mut Rng) -> u32 {
+    if rng.chance(0.5) { rng.bits() >> 20 } else { rng.bits() }
+}
+
+/// The case of a path's numbers, whose inputs are x, y, seed and sample.
+fn of_state(case: Case) -> Case {
+    let outputs = case.exact("s.key").exact("s.sample").exact("s.sequence");
+    outputs.group("", |rng, _| {
+        inputs![rng.bits() >> 16, rng.bits() >> 16, counter(rng), counter(rng)]
+    })
+}
+
 /// Any state, its sequence the given one.
 fn state<T: Scalar>(row: &mut Row<'_, T>) -> RandomState {
     let [key, sample, sequence] = [(); 3].map(|()| row.bits());
@@ -154,10 +173,6 @@ fn state<T: Scalar>(row: &mut Row<'_, T>) -> RandomState {
 
 #[test]
 fn random_numbers_are_equal_to_the_bit() {
-    // Counters as they come, and any bits.
-    fn counter(rng: &mut Rng) -> u32 {
-        if rng.chance(0.5) { rng.bits() >> 20 } else { rng.bits() }
-    }
     let draws = |sequence: Sequence| {
         move |rng: &mut Rng, _: usize| inputs![rng.bits(), counter(rng), sequence as u32, rng.bits() >> 8]
     };
@@ -219,42 +234,24 @@ fn random_numbers_are_equal_to_the_bit() {
             )
             .exact("sobol_second_reversed(index)")
             .group("", |rng, _| inputs![counter(rng)]),
-            Case::new(
+            of_state(Case::new(
                 "random_state",
                 "x y seed sample",
                 "let s = random_state(x, y, seed, sample, 1u);",
                 twin!(|row| {
                     let [x, y, seed, sample] = [(); 4].map(|()| row.bits());
-                    let state = random_state(x, y, seed, sample, Sequence::Independent);
-                    row.put_bits(state.key);
-                    row.put_bits(state.sample);
-                    row.put_bits(state.sequence as u32);
+                    put_state(row, random_state(x, y, seed, sample, Sequence::Independent));
                 }),
-            )
-            .exact("s.key")
-            .exact("s.sample")
-            .exact("s.sequence")
-            .group("", |rng, _| {
-                inputs![rng.bits() >> 16, rng.bits() >> 16, counter(rng), counter(rng)]
-            }),
-            Case::new(
+            )),
+            of_state(Case::new(
                 "path_state",
                 "x y seed sample",
                 "let s = path_state(x, y, seed, sample, 0u);",
                 twin!(|row| {
                     let [x, y, seed, sample] = [(); 4].map(|()| row.bits());
-                    let state = path_state(x, y, seed, sample, Sequence::Sobol);
-                    row.put_bits(state.key);
-                    row.put_bits(state.sample);
-                    row.put_bits(state.sequence as u32);
+                    put_state(row, path_state(x, y, seed, sample, Sequence::Sobol));
                 }),
-            )
-            .exact("s.key")
-            .exact("s.sample")
-            .exact("s.sequence")
-            .group("", |rng, _| {
-                inputs![rng.bits() >> 16, rng.bits() >> 16, counter(rng), counter(rng)]
-            }),
+            )),
             Case::new(
                 "random_pair_bits",
                 "key sample sequence dimension",
