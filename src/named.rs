@@ -102,11 +102,11 @@ macro_rules! with_defaults {
         $default
     };
     ($(#[$meta:meta])* pub struct $name:ident {
-        $($(#[$field_meta:meta])* pub $field:ident: $type:ty $(= $default:expr)?,)*
+        $($(#[$field_meta:meta])* $vis:vis $field:ident: $type:ty $(= $default:expr)?,)*
     }) => {
         $(#[$meta])*
         pub struct $name {
-            $($(#[$field_meta])* pub $field: $type,)*
+            $($(#[$field_meta])* $vis $field: $type,)*
         }
 
         impl Default for $name {

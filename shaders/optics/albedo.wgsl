@@ -13,10 +13,10 @@ fn node_below(value: f32, nodes: u32) -> vec2f {
 
 fn azimuth_place(anisotropy: f32, frame: Frame, wo: vec3f) -> f32 {
     let stretch = stretch_from_anisotropy(anisotropy);
-    let widths = vec2f(stretch * stretch, 1.0 / (stretch * stretch));
-    let along = vec2f(dot(frame.tangent, wo), dot(frame.bitangent, wo));
-    let ends = sqrt(vec2f(min(widths.x, widths.y), max(widths.x, widths.y)));
-    return (sqrt(dot(along * along, widths) / max(dot(along, along), 1e-30)) - ends.x) / max(ends.y - ends.x, 1e-6);
+    let along = local_from_world(frame, wo).xy;
+    let width = length(along * vec2f(stretch, 1.0 / stretch)) / max(length(along), 1e-15);
+    let most = max(stretch, 1.0 / stretch);
+    return (width - 1.0 / most) / max(most - 1.0 / most, 1e-6);
 }
 
 fn albedo_place(cosine: f32, eta: f32) -> f32 {

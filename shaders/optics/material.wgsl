@@ -108,9 +108,13 @@ fn has_rows(material: Material) -> bool {
     return (PLAN_ROUGH_TABLES || PLAN_ANISOTROPY) && material.has_rough_tables != 0u;
 }
 
+fn is_over_azimuth(material: Material) -> bool {
+    return PLAN_ANISOTROPY && (material.has_rough_tables & OVER_AZIMUTH) != 0u;
+}
+
 // Where such tables are read along their second side; 0 in others.
 fn table_row(material: Material, surface: Surface) -> f32 {
-    if PLAN_ANISOTROPY && (material.has_rough_tables & OVER_AZIMUTH) != 0u {
+    if is_over_azimuth(material) {
         return azimuth_place(material.anisotropy, surface.frame, surface.wo);
     }
     return select(0.0, material.roughness, has_rows(material));

@@ -6,29 +6,33 @@ fn compensates(material: Material) -> bool {
     return PLAN_MULTIPLE_SCATTERING && has_flag(material, COMPENSATES);
 }
 
-fn interface_gain(material: Material, surface: Surface, shape: LobeShape, is_reflected: bool) -> vec3f {
-    if !compensates(material) {
-        return WHITE;
+// `number` of the table: 1 and 2 are refracted from outside and within, 3 is reflected.
+fn interface_kept(material: Material, surface: Surface, number: u32) -> vec3f {
+    var kept = WHITE;
+    if compensates(material) {
+        // A film shares the light otherwise in each channel.
+        for (var channel = 0u; channel < select(1u, 3u, PLAN_THIN_FILM && material.has_film == 1u); channel++) {
+            kept = select(
+                kept, vec3f(kept_energy_of(material, surface, channel, number)), vec3u(0u, 1u, 2u) >= vec3u(channel),
+            );
+        }
     }
-    // A film shares the light otherwise in each channel.
-    let has_channels = PLAN_THIN_FILM && material.has_film == 1u && material_transmits(material);
-    var kept = vec3f();
-    for (var channel = 0u; channel < select(1u, 3u, has_channels); channel++) {
-        let energies = kept_energies(material, surface, shape, channel);
-        let refracted = select(energies.y, energies.z, is_within(material, surface));
-        let energy = select(refracted, energies.w, is_reflected);
-        kept = select(kept, vec3f(energy), vec3u(0u, 1u, 2u) >= vec3u(channel));
-    }
-    return 1.0 / kept;
+    return kept;
 }
 
-fn scattered_again(
-    material: Material, surface: Surface, shape: LobeShape, terms: FresnelTerms, cosine: f32, once: vec3f,
-) -> vec3f {
+fn scatters_within(material: Material, surface: Surface) -> bool {
+    return compensates(material) && is_within(material, surface);
+}
+
+fn scattered_within(material: Material, surface: Surface) -> vec3f {
+    return max(1.0 - 2.0 * interface_kept(material, surface, 3u), vec3f()) * f32(scatters_within(material, surface));
+}
+
+fn scattered_again(material: Material, surface: Surface, terms: FresnelTerms, cosine: f32, once: vec3f) -> vec3f {
     if !compensates(material) {
         return once;
     }
-    let kept = kept_energies(material, surface, shape, 0u).x;
+    let kept = kept_energy_of(material, surface, 0u, 0u);
     var head_on = terms.metal_f0 * terms.metal_tint;
     if !has_parts(terms) {
         head_on = fresnel(terms, 1.0);
@@ -43,7 +47,7 @@ fn scattered_again(
     // The refracting share of a dielectric is clear; the rest lies over a base. An index of 1 lets all else go straight on.
     var clear = facet_gain(vec3f(fresnel_f0(terms.ior)), WHITE, kept, view_cosine(surface));
     if is_within(material, surface) {
-        clear = interface_gain(material, surface, shape, true);
+        clear = 1.0 / max(interface_kept(material, surface, 3u), vec3f(0.5));
     }
     let dielectric = parts.dielectric * mix(WHITE, clear, material.transmission_weight * f32(material.ior != 1.0));
     return mix(dielectric, parts.metal * gain, terms.metalness);
@@ -56,7 +60,16 @@ fn facet_gain(head_on: vec3f, grazing: vec3f, kept: f32, cosine: f32) -> vec3f {
     return 1.0 + mean * leaves / (1.0 - mean * (1.0 - leaves)) * ((1.0 - kept) / kept);
 }
 
-fn kept_energies(material: Material, surface: Surface, shape: LobeShape, channel: u32) -> vec4f {
-    let table = shape.table + channel * select(4u * ALBEDO_NODES, ROUGH_ALBEDO_LENGTH, has_rows(material));
-    return rough_albedo_lookup(table, safe_sqrt(view_cosine(surface)), table_row(material, surface));
+fn kept_cosine(material: Material, surface: Surface) -> f32 {
+    if !PLAN_ANISOTROPY || is_over_azimuth(material) || material.anisotropy == 0.0 {
+        return view_cosine(surface);
+    }
+    let stretch = stretch_from_anisotropy(material.anisotropy);
+    let widths = vec3f(stretch, 1.0 / stretch, 0.5 * stretch + 0.5 / stretch);
+    return normalize(local_from_world(surface.frame, surface.wo) * widths).z;
+}
+
+fn kept_energy_of(material: Material, surface: Surface, channel: u32, number: u32) -> f32 {
+    let table = material.lobe_table + channel * select(4u * ALBEDO_NODES, ROUGH_ALBEDO_LENGTH, has_rows(material));
+    return rough_albedo_lookup(table, safe_sqrt(kept_cosine(material, surface)), table_row(material, surface))[number];
 }

@@ -51,13 +51,15 @@ pub fn half_difference_variance([even, odd]: &[HalfSums; 2]) -> f64 {
 
 /// The relative error of a render; `None` without samples in both halves. A black image has no error.
 pub fn noise(film: &Film) -> Option<Noise> {
+    let pixels = film.pixel_count() as f64;
+    let has_both = |halves: &&[HalfSums; 2]| halves.iter().all(|half| half.samples >= 1.0);
+    let measurable = film.pixels.iter().filter(has_both).count() as f64;
+    if measurable < MEASURED_SHARE * pixels || pixels == 0.0 {
+        return None;
+    }
     let bands = parallel::map_into(bands(film.grid()), |rows| Sums::of(&Band::of(film, rows)));
     let mut sums = Sums::default();
     bands.into_iter().for_each(|band| sums += band);
-    let pixels = film.pixel_count() as f64;
-    if sums.measured < MEASURED_SHARE * pixels || pixels == 0.0 {
-        return None;
-    }
     let mean_luminance = sums.luminance / pixels;
     let relative = |sum: f64| {
         if sum > 0.0 {

@@ -171,7 +171,7 @@ commands! {
     Compare, View, "Compare A and B", "Shows the material beside another one, or beside another lobe.", key(Key::C), 5;
     SwapCompared, View, "Swap A and B", "Makes B the document, and what the document was B.", key(Key::X), 5;
     TakeCompared, View, "Replace A with B", "Applies B's materials and stops comparing.", None, 5;
-    Inspect, View, "Pin the pixel", "The inspector stays at the pixel under the pointer, or follows the pointer again.", key(Key::I), 6;
+    Inspect, View, "Pin the pixel", "Explains the pixel under the pointer: the inspector stays at it, or follows the pointer again.", key(Key::I), 6;
     ZoomIn, View, "Magnify the image", "Shows the pixels of the image larger. In the viewport: ctrl and the wheel.", key(Key::Plus), 6;
     ZoomOut, View, "Less magnified", "Shows the pixels of the image smaller, down to the whole image.", key(Key::Minus), 6;
     ZoomFit, View, "Whole image", "Shows the whole image again, as large as it fits.", key(Key::Num0), 6;

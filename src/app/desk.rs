@@ -21,7 +21,7 @@ use crate::{
         library::Library,
         library::Snapshots,
         look::Look,
-        messages::Entry,
+        messages::LogEntry,
         pictures::Pictures,
         recent::Recent,
         reference::ReferenceImage,
@@ -46,7 +46,7 @@ pub struct Shared {
     /// What is edited, chosen and lit up.
     pub selection: Selection,
     /// What was said, oldest first.
-    pub messages: Vec<Entry>,
+    pub messages: Vec<LogEntry>,
     /// Thumbnails of materials and environments.
     pub pictures: Pictures,
     /// The files opened and saved last.

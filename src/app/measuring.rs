@@ -109,7 +109,7 @@ impl<R: Clone + Send + Sync + 'static> StudyWorker<R> {
         // Two at once would take each other's time.
         let is_free = !desk.shared.rendering.is_measuring;
         let is_requested = is_free && std::mem::take(&mut self.is_requested);
-        ui.horizontal(|ui| {
+        ui.horizontal_wrapped(|ui| {
             let dress = |button: egui::Response| {
                 let button = widgets::explained(button, help);
                 button.on_disabled_hover_text("Something else is being measured.")

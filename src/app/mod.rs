@@ -43,7 +43,7 @@ use services::{
     edits::Edits,
     library::{Change, Folder},
     messages,
-    messages::Entry,
+    messages::LogEntry,
     pictures::Pictures,
     recent::Recent,
     selection::Selection,
@@ -316,7 +316,7 @@ impl App {
     }
 
     fn report(&mut self, level: Level, text: impl Into<String>) {
-        self.say(Entry::new(level, text.into()));
+        self.say(LogEntry::new(level, text.into()));
     }
 
     fn note(&mut self, text: impl Into<String>) {
@@ -336,11 +336,11 @@ impl App {
         outcome.map_err(|error| self.fail(error)).ok()
     }
 
-    fn say(&mut self, entry: Entry) {
+    fn say(&mut self, entry: LogEntry) {
         messages::add(&mut self.shared.messages, entry);
     }
 
-    fn say_all(&mut self, entries: impl IntoIterator<Item = Entry>) {
+    fn say_all(&mut self, entries: impl IntoIterator<Item = LogEntry>) {
         entries.into_iter().for_each(|entry| self.say(entry));
     }
 
@@ -348,7 +348,7 @@ impl App {
         self.take_files(ctx);
         self.take_autosave_reports();
         for ended in self.shared.queue.take_news() {
-            self.report_outcome(ended.map(Entry::done));
+            self.report_outcome(ended.map(LogEntry::done));
         }
         if self.awaited > 0 && self.files.is_reading() {
             // Projects and materials first, whichever is read faster: a model given beside a project changes it.

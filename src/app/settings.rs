@@ -8,8 +8,10 @@ use serde::{Deserialize, Serialize};
 use crate::{
     document::{Denoise, ImportLobe},
     import::limits,
+    named::with_defaults,
     render::{EngineChoice, denoise::Library},
     services::{shelves::KeptShelves, viewing::Resolution},
+    store::picture::png_image,
     workspaces::Workspaces,
 };
 
@@ -37,7 +39,12 @@ pub fn native_options() -> eframe::NativeOptions {
 /// The window's image, which desktops show beside its name.
 fn icon() -> Arc<egui::IconData> {
     let png = include_bytes!("../../assets/desktop/glossmith.png");
-    Arc::new(eframe::icon_data::from_png_bytes(png).unwrap_or_default())
+    let icon = png_image(png).map(|image| egui::IconData {
+        width: image.width(),
+        height: image.height(),
+        rgba: image.into_raw(),
+    });
+    Arc::new(icon.unwrap_or_default())
 }
 
 /// Frames after the start in which the window is fitted to the screen: by then the system has reported both sizes.
@@ -87,41 +94,27 @@ pub fn folders() -> Option<[PathBuf; 2]> {
     Some([folders.data_local_dir(), folders.cache_dir()].map(Path::to_owned))
 }
 
-/// What is remembered.
-#[derive(Serialize, Deserialize)]
-#[serde(default)]
-pub struct KeptSettings {
-    pub theme: ThemePreference,
-    /// With their arrangements of the panels.
-    pub workspaces: Workspaces,
-    pub resolution: Resolution,
-    pub import_lobe: ImportLobe,
-    /// The engine as it was chosen by hand.
-    pub engine: EngineChoice,
-    /// How images were denoised last: new documents begin with that.
-    #[serde(default = "first_denoise")]
-    pub denoise: Denoise,
-    /// Files opened and saved, the latest first.
-    pub recent: Vec<PathBuf>,
-    /// What the browser remembers.
-    pub shelves: KeptShelves,
-    /// Files that others may name, wherever they lie.
-    pub allowed: Vec<PathBuf>,
-}
-
-impl Default for KeptSettings {
-    fn default() -> Self {
-        Self {
-            theme: ThemePreference::Dark,
-            workspaces: Workspaces::default(),
-            resolution: Resolution::default(),
-            import_lobe: ImportLobe::default(),
-            engine: EngineChoice::Auto,
-            denoise: Denoise::Off,
-            recent: Vec::new(),
-            shelves: KeptShelves::default(),
-            allowed: Vec::new(),
-        }
+with_defaults! {
+    /// What is remembered.
+    #[derive(Serialize, Deserialize)]
+    #[serde(default)]
+    pub struct KeptSettings {
+        pub theme: ThemePreference = ThemePreference::Dark,
+        /// With their arrangements of the panels.
+        pub workspaces: Workspaces,
+        pub resolution: Resolution,
+        pub import_lobe: ImportLobe,
+        /// The engine as it was chosen by hand.
+        pub engine: EngineChoice,
+        /// How images were denoised last: new documents begin with that.
+        #[serde(default = "first_denoise")]
+        pub denoise: Denoise,
+        /// Files opened and saved, the latest first.
+        pub recent: Vec<PathBuf>,
+        /// What the browser remembers.
+        pub shelves: KeptShelves,
+        /// Files that others may name, wherever they lie.
+        pub allowed: Vec<PathBuf>,
     }
 }
 
@@ -133,7 +126,9 @@ impl KeptSettings {
             ..Self::default()
         };
         let kept: Self = creation.storage.map_or_else(Self::default, |storage| {
-            eframe::get_value(storage, KEY).unwrap_or_else(first)
+            let kept = storage.get_string(KEY);
+            kept.and_then(|text| serde_json::from_str(&text).ok())
+                .unwrap_or_else(first)
         });
         limits::allow(&kept.allowed);
         kept
@@ -141,7 +136,10 @@ impl KeptSettings {
 
     /// Leaves it for the next start.
     pub fn save(&self, storage: &mut dyn eframe::Storage) {
-        eframe::set_value(storage, KEY, self);
+        match serde_json::to_string(self) {
+            Ok(text) => storage.set_string(KEY, text),
+            Err(error) => log::error!("settings are not kept: {error}"),
+        }
     }
 }
 

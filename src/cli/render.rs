@@ -1,6 +1,6 @@
 //! `glossmith render`: a document from arguments, an image in a file.
 
-use std::{fmt, io::IsTerminal, path::PathBuf, time::Duration, time::Instant};
+use std::{borrow::Cow, fmt, io::IsTerminal, path::PathBuf, time::Duration, time::Instant};
 
 use anyhow::bail;
 use clap::Args;
@@ -150,9 +150,19 @@ fn render(mut session: Session, document: &Document, begun: Instant, targets: &R
     if let (Some(signal), true) = (ended_by, progress.mean_samples == 0.0) {
         return Err(anyhow::Error::new(signal).context("nothing was rendered yet, and nothing is written"));
     }
-    let (image, lights) = (session.image()?, session.light_layers()?);
+    let lights = session.light_layers()?;
     let layers = targets.aovs.then(|| session.layers()).transpose()?;
+    let image = match &layers {
+        Some(layers) => Cow::Borrowed(&layers.image),
+        None => Cow::Owned(session.image()?),
+    };
     let sums = targets.keep_sums.then(|| session.kept_film()).transpose()?;
+    let film = session.film()?;
+    let (cut, dropped) = (film.cut_share(), film.dropped());
+    let mut report = || json_report(&mut session, document, setup_seconds, progress, targets.aovs);
+    let report = targets.report.as_ref().map(|_| report()).transpose()?;
+    // Its sums are not needed while the image is written.
+    drop(session);
     let rendered = rendered(&image, denoised.as_ref(), &lights);
     let rendered = Rendered {
         layers: layers.as_ref(),
@@ -161,11 +171,9 @@ fn render(mut session: Session, document: &Document, begun: Instant, targets: &R
     };
     write_pictures(&targets.outputs, rendered, document)?;
     // Words come after the image: who does not read them must not hold it up.
-    let cut = session.film()?.cut_share();
     message!("{}{}", summary(&progress), beyond_bounces(cut, document.render.bounces));
     report_written(&targets.outputs);
-    if let Some(destination) = &targets.report {
-        let mut report = json_report(&mut session, document, setup_seconds, progress, targets.aovs)?;
+    if let (Some(destination), Some(mut report)) = (&targets.report, report) {
         add_denoised(&mut report, document, denoised.as_ref());
         report["files"] = serde_json::json!(file_names(&targets.outputs));
         if ended_by.is_some() {
@@ -173,7 +181,6 @@ fn render(mut session: Session, document: &Document, begun: Instant, targets: &R
         }
         write_json(destination, &report)?;
     }
-    let dropped = session.film()?.dropped();
     if dropped > 0 {
         message!("{dropped} samples were left out: not finite, negative, or above 1e18");
     }

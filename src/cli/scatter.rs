@@ -78,7 +78,7 @@ pub fn run(arguments: &ScatterArguments) -> anyhow::Result<()> {
         count: arguments.count,
         seed: arguments.seed,
     };
-    let cloud = crate::render::Sampler::open(arguments.engine)?.draw(&request)?;
+    let cloud = crate::render::Prober::open(arguments.engine)?.scatter(&request)?;
     if cloud.absorbed > 0 {
         message!(
             "{} of {} samples were absorbed at the horizon",

@@ -78,14 +78,14 @@ pub struct Reloaded {
 
 #[derive(Debug)]
 struct Cache {
-    entries: Vec<Entry>,
+    entries: Vec<CachedAsset>,
     /// Counts the uses.
     clock: u64,
     memory: usize,
 }
 
 #[derive(Debug)]
-struct Entry {
+struct CachedAsset {
     key: Key,
     value: Arc<dyn Asset>,
     used: u64,
@@ -220,7 +220,7 @@ impl Cache {
         let value = Arc::new(value);
         self.entries.retain(|entry| entry.key != key);
         self.clock += 1;
-        self.entries.push(Entry {
+        self.entries.push(CachedAsset {
             key,
             value: value.clone(),
             used: self.clock,
@@ -359,8 +359,8 @@ impl Cache {
     /// count from when they are built.
     fn tidy(&mut self) {
         while self.entries.iter().map(|entry| entry.value.bytes()).sum::<usize>() > self.memory {
-            let has_others = |entry: &&Entry| {
-                let is_alike = |other: &&Entry| discriminant(&other.key) == discriminant(&entry.key);
+            let has_others = |entry: &&CachedAsset| {
+                let is_alike = |other: &&CachedAsset| discriminant(&other.key) == discriminant(&entry.key);
                 self.entries.iter().filter(is_alike).count() > 1
             };
             let spare = self.entries.iter().filter(has_others);

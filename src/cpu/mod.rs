@@ -5,7 +5,6 @@ pub mod oracle;
 pub mod precision;
 pub mod probe;
 pub mod recorder;
-pub mod scatter;
 mod tile_sums;
 
 use std::{

@@ -7,7 +7,7 @@ use std::borrow::Cow;
 #[derive(Clone, Debug)]
 pub struct History<T> {
     /// Oldest first; never empty.
-    states: Vec<State<T>>,
+    states: Vec<Revision<T>>,
     /// Where in them the document is.
     current: usize,
     /// Most steps that can be undone.
@@ -21,7 +21,7 @@ pub struct History<T> {
 }
 
 #[derive(Clone, Debug)]
-struct State<T> {
+struct Revision<T> {
     value: T,
     /// What was done to get here.
     label: Cow<'static, str>,
@@ -32,7 +32,7 @@ struct State<T> {
 impl<T: Clone + PartialEq> History<T> {
     /// Starts with a value that counts as saved; at most `limit` steps (at least 1) can be undone.
     pub fn new(value: T, limit: usize) -> Self {
-        let first = State {
+        let first = Revision {
             value,
             label: Cow::Borrowed(""),
             key: None,
@@ -63,7 +63,7 @@ impl<T: Clone + PartialEq> History<T> {
             self.drop_step_that_led_back();
             return;
         }
-        self.states.push(State {
+        self.states.push(Revision {
             value: value.clone(),
             label: label.into(),
             key,

@@ -3,7 +3,6 @@
 use super::{
     array::TEXEL_ROW_BITS,
     layout::{BACKGROUNDS, Globals, PixelColors, PixelStatistics, TILE_COLUMNS, Tile},
-    scatter::Scatter,
     scene_group::FEW_MATERIALS,
 };
 use crate::{
@@ -174,7 +173,7 @@ fn constants() -> String {
     text + &format!("const RANGE_MAX: vec2f = {};\n", vector(RANGE_MAX))
 }
 
-/// The structures of `gpu::layout` and the uniforms of the scatter pass.
+/// The structures of `gpu::layout`.
 fn structures() -> String {
     let structure = |name: &str, members: &[(&str, &str)]| {
         let member = |(name, of_type): &(&str, &str)| {
@@ -194,12 +193,11 @@ fn structures() -> String {
         )
     };
     [
-        "// Generated from src/gpu/layout.rs and src/gpu/scatter.rs.\n#import \"scene/camera\"\n".to_owned(),
+        "// Generated from src/gpu/layout.rs.\n#import \"scene/camera\"\n".to_owned(),
         structure("Globals", Globals::MEMBERS),
         structure("Tile", Tile::MEMBERS),
         structure("PixelColors", PixelColors::MEMBERS),
         structure("PixelStatistics", PixelStatistics::MEMBERS),
-        structure("Scatter", Scatter::MEMBERS),
     ]
     .concat()
 }
@@ -273,9 +271,19 @@ fn plan_constants() -> String {
     }
     let layers: String = Layer::ALL
         .iter()
-        .map(|layer| format!(" + (u32(PLAN_{}) << {}u)", layer.name().to_uppercase(), *layer as u32))
+        .map(|layer| {
+            let planned = match layer {
+                Layer::Base => "plans_base()".to_owned(),
+                other => format!("PLAN_{}", other.name().to_uppercase()),
+            };
+            format!(" + (u32({planned}) << {}u)", *layer as u32)
+        })
         .collect();
-    text += &format!("// As bits.\nfn planned_layers() -> u32 {{\n    return 0u{layers};\n}}\n");
+    text += &format!(
+        "// Its lobe also has what facets of a clear interface scatter within.\nfn plans_base() -> bool {{\n    \
+         return PLAN_BASE || (PLAN_MULTIPLE_SCATTERING && PLAN_TRANSMISSION);\n}}\n\
+         // As bits.\nfn planned_layers() -> u32 {{\n    return 0u{layers};\n}}\n"
+    );
     let multiplied = |targets: &[TextureTarget]| targets.iter().any(|target| !target.fields().is_empty());
     let textures = TextureTarget::PLANS.iter().filter(|(_, targets)| multiplied(targets));
     let textures: String = textures

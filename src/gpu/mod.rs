@@ -15,7 +15,6 @@ pub mod layout;
 mod pipeline;
 pub mod probe;
 mod resources;
-pub mod scatter;
 pub mod scene_group;
 pub mod shader;
 mod structures;

@@ -15,7 +15,7 @@ use std::{
 
 use sysinfo::{MemoryRefreshKind, RefreshKind, System};
 
-use crate::{panics::lock, scene::Loading};
+use crate::{panics::lock, scene::Loading, shipped::shipped};
 
 /// The most bytes of one file.
 pub(super) const BYTES_MAX: u64 = 4 << 30;
@@ -65,19 +65,27 @@ pub fn open(path: &Path) -> io::Result<File> {
     }
 }
 
+/// Bytes of a regular file or a shipped map.
+pub(super) fn length(path: &Path) -> io::Result<u64> {
+    shipped(path).map_or_else(|| Ok(open(path)?.metadata()?.len()), |map| Ok(map.len() as u64))
+}
+
 /// Contents of a file, counted against the budget.
 pub(super) fn read_counted(path: &Path, budget: &Budget, loading: &Loading) -> io::Result<Vec<u8>> {
-    budget.take(open(path)?.metadata()?.len())?;
+    budget.take(length(path)?)?;
     read_watched(path, BYTES_MAX, loading)
 }
 
-/// Contents of a regular file of at most `most` bytes.
+/// Contents of a regular file of at most `most` bytes, or of a shipped map.
 pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     read_watched(path, most, &Loading::default())
 }
 
 /// The same with progress and cancellation.
 pub(super) fn read_watched(path: &Path, most: u64, loading: &Loading) -> io::Result<Vec<u8>> {
+    if let Some(map) = shipped(path) {
+        return Ok(map.to_vec());
+    }
     let file = open(path)?;
     let too_large = || io::Error::new(ErrorKind::FileTooLarge, format!("larger than {} MiB", most >> 20));
     let length = file.metadata()?.len();

@@ -21,9 +21,11 @@ mod ply;
 mod polygon;
 mod preview_surface;
 pub mod remembered;
+mod shipped;
 mod stl;
 #[cfg(feature = "usd")]
 pub mod usd;
+pub mod xml;
 
 pub use fbx::FBX_PARAMETERS;
 pub use file_parameter::{FileParameter, Goes};

@@ -5,12 +5,12 @@ use std::{fmt::Display, path::Path, path::PathBuf, sync::Arc, sync::Mutex, time:
 use crate::panics::lock;
 
 /// A file, when it was saved, and what it holds.
-type Entry<T> = (PathBuf, Option<SystemTime>, Option<Arc<T>>);
+type CachedFile<T> = (PathBuf, Option<SystemTime>, Option<Arc<T>>);
 
 /// The contents of the files that were asked for last, the latest at the end.
 #[derive(Debug)]
 pub struct Remembered<T> {
-    entries: Mutex<Vec<Entry<T>>>,
+    entries: Mutex<Vec<CachedFile<T>>>,
     most: usize,
 }
 

@@ -1,6 +1,7 @@
 //! What is known of each pixel beside its colour: what is seen there first, and its samples. For compositing and maps.
 
 use super::film::Film;
+use crate::parallel;
 
 /// Means over some samples of each pixel; row by row from the top.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -26,21 +27,24 @@ impl Features {
     }
 
     /// The same with the number of guide samples of each half, by pixel.
-    pub fn of_samples(film: &Film, samples: impl Fn(usize) -> [f64; 2], world_units_per_unit: f64) -> Self {
-        let mut features = Self::default();
-        for pixel in 0..film.pixel_count() {
+    pub fn of_samples(film: &Film, samples: impl Fn(usize) -> [f64; 2] + Sync, world_units_per_unit: f64) -> Self {
+        let guides = |pixel: usize| {
             let [mut sums, odd] = film.guides.get(pixel).copied().unwrap_or_default();
             sums.add(&odd);
-            let [albedo, normal] = sums.means(samples(pixel).iter().sum());
-            features.albedo.push(albedo);
-            features.normal.push(normal);
-            features.depth.push(match sums.hits {
-                hits if hits > 0.0 => (f64::from(sums.depth / hits) * world_units_per_unit) as f32,
-                _ => f32::INFINITY,
-            });
-            features.samples.push(film.samples_of(pixel) as f32);
-            features.variance.push(film.variance_of_mean_at(pixel) as f32);
+            sums
+        };
+        let means = |pixel: usize| guides(pixel).means(samples(pixel).iter().sum());
+        let depth = |pixel: usize| match guides(pixel) {
+            sums if sums.hits > 0.0 => (f64::from(sums.depth / sums.hits) * world_units_per_unit) as f32,
+            _ => f32::INFINITY,
+        };
+        let pixels = film.pixel_count();
+        Self {
+            albedo: parallel::map(pixels, |pixel| means(pixel)[0]),
+            normal: parallel::map(pixels, |pixel| means(pixel)[1]),
+            depth: parallel::map(pixels, depth),
+            samples: parallel::map(pixels, |pixel| film.samples_of(pixel) as f32),
+            variance: parallel::map(pixels, |pixel| film.variance_of_mean_at(pixel) as f32),
         }
-        features
     }
 }

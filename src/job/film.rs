@@ -96,6 +96,7 @@ impl HalfSums {
     }
 
     /// Both together (Chan, Golub and LeVeque 1983).
+    #[inline]
     pub fn with(&self, other: &Self) -> Self {
         let samples = self.samples + other.samples;
         let between = if self.samples > 0.0 && other.samples > 0.0 {

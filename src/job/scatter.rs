@@ -1,9 +1,11 @@
 //! Clouds of lobe samples: request and result, for either engine.
 
+use super::probe::{LobeAnswer, LobeQuestion};
 use crate::optics::{
     frame::Frame,
     lobe::lobe_middle,
     lobe::model::{LobeModel, view_direction},
+    random::{Sequence, random_pair, random_state},
     real::Real,
     vector::{Vec3, vec3},
 };
@@ -34,6 +36,20 @@ impl ScatterRequest {
         lobe_middle(&self.model.shape(), &frame, frame.normal, self.wo())
     }
 
+    /// What draws sample `i`, as the path tracer does; its `wi` is left open.
+    pub fn question(&self, i: u32) -> LobeQuestion {
+        let state = random_state(0, 0, self.seed, i, Sequence::Independent);
+        let ([a, b], [c, _]) = (random_pair(state, 0), random_pair(state, 1));
+        let normal = Self::frame().normal;
+        LobeQuestion {
+            shading: normal,
+            normal,
+            wo: self.wo(),
+            xi: [a, b, c],
+            ..LobeQuestion::about(&self.model.shape(), 0)
+        }
+    }
+
     /// The frame: the axes.
     pub fn frame<T: Real>() -> Frame<T> {
         let (zero, one) = (T::ZERO, T::ONE);
@@ -54,13 +70,12 @@ pub struct ScatterCloud {
 }
 
 impl ScatterCloud {
-    /// From raw samples, whose density is negative if absorbed.
-    pub fn from_raw(mut samples: Vec<[f32; 4]>) -> Self {
-        let drawn = samples.len();
-        samples.retain(|sample| sample[3] >= 0.0);
-        Self {
-            absorbed: (drawn - samples.len()) as u32,
-            samples,
+    /// Adds a sample.
+    pub fn add(&mut self, sample: &LobeAnswer) {
+        let [x, y, z] = sample.wi.to_f32();
+        match sample.weight > 0.0 {
+            true => self.samples.push([x, y, z, sample.drawn[1]]),
+            false => self.absorbed += 1,
         }
     }
 }

@@ -35,20 +35,7 @@ inlined! {
     /// Specular albedo, then 0, at position `place` in [0, 1] of a table, linear between its nodes: the view's cosine from outside,
     /// [`albedo_place`] from within.
     pub fn albedo_lookup<T: Real>(tables: &[f32], albedo_table: u32, place: T) -> [T; 4] {
-        let [low, beyond] = node_below(place, ALBEDO_NODES);
-        let table = &tables[albedo_table as usize..];
-        let [left, right] = [table, &table[NODE_LENGTH..]].map(|table| albedo_node(table, low));
-        [0, 1, 2, 3].map(|number| left[number] + (right[number] - left[number]) * beyond)
-    }
-
-    /// The numbers at a node of a table.
-    fn albedo_node<T: Real>(table: &[f32], node: T) -> [T; 4] {
-        [
-            look_up_number::<0, T>(table, node),
-            look_up_number::<1, T>(table, node),
-            look_up_number::<2, T>(table, node),
-            look_up_number::<3, T>(table, node),
-        ]
+        mapped!([0, 1, 2, 3], |number| albedo_number(tables, albedo_table, number, place))
     }
 
     /// Table position of a view, in [0, 1]. At the critical angle the albedo of a smooth interface has a vertical tangent: below
@@ -66,6 +53,17 @@ inlined! {
         let place = T::select(square.below_zero(), below, above);
         T::select(is_total_somewhere, place, cosine)
     }
+}
+
+/// One number of [`albedo_lookup`].
+#[inline(always)]
+pub fn albedo_number<T: Real>(tables: &[f32], albedo_table: u32, number: usize, place: T) -> T {
+    let [low, beyond] = node_below(place, ALBEDO_NODES);
+    let table = &tables[albedo_table as usize..];
+    let [left, right] = mapped!([table, &table[NODE_LENGTH..]], |nodes| {
+        look_up_number(nodes, number, low)
+    });
+    left + (right - left) * beyond
 }
 
 /// The view's cosine at a node of a table: [`albedo_place`] backwards.
@@ -103,7 +101,7 @@ inlined! {
     pub fn azimuth_place<T: Real>(anisotropy: T, frame: &Frame<T>, wo: Vec3<T>) -> T {
         let stretch = stretch_from_anisotropy(anisotropy);
         let [wide, narrow] = [stretch * stretch, T::ONE / (stretch * stretch)];
-        let [x, y] = [frame.tangent.dot(wo), frame.bitangent.dot(wo)].map(|x| x * x);
+        let [x, y] = mapped!([frame.tangent.dot(wo), frame.bitangent.dot(wo)], |x| x * x);
         let width = ((x * wide + y * narrow) / (x + y).max(T::from_f64(1e-30))).sqrt();
         let [least, most] = [wide.min(narrow).sqrt(), wide.max(narrow).sqrt()];
         (width - least) / (most - least).max(T::from_f64(1e-6))
@@ -232,24 +230,22 @@ fn fresnel_basis(terms: &FresnelTerms<f64>, cosine: f64) -> [f64; 4] {
 /// The four integrals at a `place` as in [`albedo_lookup`] and a roughness, linear between the nodes.
 #[inline(always)]
 pub fn rough_albedo_lookup<T: Real>(tables: &[f32], albedo_table: u32, place: T, roughness: T) -> [T; 4] {
+    mapped!([0, 1, 2, 3], |number| {
+        rough_albedo_number(tables, albedo_table, number, [place, roughness])
+    })
+}
+
+/// One of them.
+#[inline(always)]
+pub fn rough_albedo_number<T: Real>(tables: &[f32], albedo_table: u32, number: usize, [place, roughness]: [T; 2]) -> T {
     let [step, beyond_step] = node_below(roughness, ROUGHNESS_NODES);
     let [low, beyond] = node_below(place, ALBEDO_NODES);
     let first = step * T::from_f64(ALBEDO_NODES as f64) + low;
     let table = &tables[albedo_table as usize..];
-    [
-        between_nodes::<0, T>(table, first, [beyond, beyond_step]),
-        between_nodes::<1, T>(table, first, [beyond, beyond_step]),
-        between_nodes::<2, T>(table, first, [beyond, beyond_step]),
-        between_nodes::<3, T>(table, first, [beyond, beyond_step]),
-    ]
-}
-
-/// An integral between four nodes of a rough albedo table.
-#[inline(always)]
-fn between_nodes<const NUMBER: usize, T: Real>(table: &[f32], first: T, [beyond, beyond_step]: [T; 2]) -> T {
     let row = &table[NODE_LENGTH * ALBEDO_NODES..];
-    let [a, b, c, d] =
-        [table, &table[NODE_LENGTH..], row, &row[NODE_LENGTH..]].map(|nodes| look_up_number::<NUMBER, T>(nodes, first));
+    let [a, b, c, d] = mapped!([table, &table[NODE_LENGTH..], row, &row[NODE_LENGTH..]], |nodes| {
+        look_up_number(nodes, number, first)
+    });
     let (smooth, rough) = (a + (b - a) * beyond, c + (d - c) * beyond);
     smooth + (rough - smooth) * beyond_step
 }

@@ -21,8 +21,7 @@ inlined! {
     /// The coat's colour, that of a way in and out at right angles, over a way of this length.
     pub fn color_over<T: Real>(material: &Material<T>, way: T) -> Vec3<T> {
         let half = T::HALF * way;
-        let color = |channel: T| channel.max(T::from_f64(COLOR_MIN)).powf(half);
-        material.coat_color.map(color)
+        material.coat_color.map(#[inline(always)] |channel: T| channel.max(T::from_f64(COLOR_MIN)).powf(half))
     }
 
     /// What such a coat leaves of the light that a surface emits at this cosine to its normal. `is_back`: lanes behind the

@@ -49,7 +49,7 @@ inlined! {
 
     /// Each channel brought into [0, 1].
     fn in_unit<T: Real>(share: Vec3<T>) -> Vec3<T> {
-        share.map(|x| x.clamp(T::ZERO, T::ONE))
+        share.map(#[inline(always)] |x| x.clamp(T::ZERO, T::ONE))
     }
 
     /// Cosine at the half vector of two unit directions: half the length of their sum. √(½ + ½ wo·wi) would lose precision for

@@ -66,6 +66,7 @@ trait Cast<U> {
 
 impl<T: Scalar, U: Real> Cast<U> for T {
     type Output = U;
+    #[inline(always)]
     fn cast(self) -> U {
         U::from_f64(self.to_f64())
     }
@@ -73,6 +74,7 @@ impl<T: Scalar, U: Real> Cast<U> for T {
 
 impl<T: Scalar, U: Real> Cast<U> for Vec3<T> {
     type Output = Vec3<U>;
+    #[inline(always)]
     fn cast(self) -> Vec3<U> {
         Vec3::from_f64(self.to_f64())
     }
@@ -127,6 +129,7 @@ macro_rules! material {
 
         impl<T: Scalar> Material<T> {
             /// The same material in another precision.
+            #[inline(always)]
             pub fn cast<U: Real>(&self) -> Material<U> {
                 Material { $($field: Cast::<U>::cast(self.$field),)* }
             }

@@ -38,6 +38,6 @@ pub mod warp;
 pub(crate) mod prelude {
     pub use super::elementary::Single;
     pub use super::real::{Mask, Real, Scalar};
-    pub(crate) use super::real::{inlined, out_of_line, vectorized};
+    pub(crate) use super::real::{inlined, mapped, out_of_line, vectorized};
     pub use super::vector::{Vec3, vec3};
 }

@@ -34,6 +34,18 @@ macro_rules! vectorized {
 }
 pub(crate) use vectorized;
 
+/// A list whose items an expression follows from. The library's `map` of an array may not be inlined, and then falls out of
+/// lanes.
+macro_rules! mapped {
+    ([$($item:expr),+ $(,)?], |$of:pat_param| $value:expr) => {
+        [$({
+            let $of = $item;
+            $value
+        }),+]
+    };
+}
+pub(crate) use mapped;
+
 /// [`Real::out_of_line`] for an expression.
 macro_rules! out_of_line {
     ($number:ident, $body:expr) => {

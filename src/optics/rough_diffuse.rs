@@ -16,15 +16,15 @@ pub const ROUGH_COSINE_MIN: f64 = 1e-4;
 inlined! {
     /// The value over that of Lambert's model with the same albedo, linear RGB: from the cosines of both directions to the normal
     /// and the cosine between them. 1 at roughness 0.
-    pub fn rough_diffuse<T: Real>(albedo: Vec3<T>, roughness: T, cosines: [T; 2], between: T) -> Vec3<T> {
+    pub fn rough_diffuse<T: Real>(albedo: Vec3<T>, roughness: T, [view, light]: [T; 2], between: T) -> Vec3<T> {
         let (zero, one) = (T::ZERO, T::ONE);
-        let [cosine_o, cosine_i] = cosines.map(|cosine| cosine.clamp(T::from_f64(ROUGH_COSINE_MIN), one));
+        let [cosine_o, cosine_i] = mapped!([view, light], |cosine| cosine.clamp(T::from_f64(ROUGH_COSINE_MIN), one));
         let head_on = one / (one + roughness * T::from_f64(HEAD_ON));
         let across = between - cosine_o * cosine_i;
         let across = T::select(across.above_zero(), across / cosine_o.max(cosine_i), across);
         let once = head_on * (one + roughness * across);
         let mean = head_on * (one + roughness * T::from_f64(MEAN));
-        let lost = [cosine_o, cosine_i].map(|cosine| (one - single_albedo(cosine, roughness)).max(zero));
+        let lost = mapped!([cosine_o, cosine_i], |cosine| (one - single_albedo(cosine, roughness)).max(zero));
         let again = mean * lost[0] * lost[1] / (one - mean).max(T::from_f64(1e-6));
         let of_channel = |albedo: T| once + again * albedo / (one - albedo * (one - mean));
         vec3(of_channel(albedo.x), of_channel(albedo.y), of_channel(albedo.z))

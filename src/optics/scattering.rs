@@ -4,17 +4,19 @@
 //! Hanika, d'Eon and Dachsbacher, "Multiple-scattering microfacet BSDFs with the Smith model", 2016).
 //!
 //! A metal's lobe is multiplied by 1 + x (1 − E)/E, E being the energy that the lobe keeps with F = 1: a white metal
-//! reflects all light. What a clear interface loses goes on; from within most of it is reflected. The base below a dielectric
-//! takes what its lobe loses, so that needs no factor.
+//! reflects all light. What a clear interface loses goes on; from within most of it is reflected, by the facets as far as that
+//! doubles what they reflect once, beyond in all directions. The base below a dielectric takes what its lobe loses, so that
+//! needs no factor.
 
 use super::{
     albedo::{
-        ALBEDO_LENGTH, ALBEDO_NODES, ROUGH_ALBEDO_LENGTH, ROUGHNESS_NODES, albedo_lookup, node_turn,
-        rough_albedo_lookup, table_row, view_at,
+        ALBEDO_LENGTH, ALBEDO_NODES, ROUGH_ALBEDO_LENGTH, ROUGHNESS_NODES, albedo_number, node_turn,
+        rough_albedo_number, table_row, view_at,
     },
+    frame::local_from_world,
     fresnel::{FresnelTerms, fresnel, fresnel_dielectric, fresnel_f0, fresnel_parts, fresnel_transmitted},
     lanes::{InLanes, in_lanes},
-    lobe::{LobeShape, ggx::visible_normal, microfacet_alpha},
+    lobe::{LobeShape, ggx::visible_normal, microfacet_alpha, stretch_from_anisotropy},
     material::{COMPENSATES, Material, Surface},
     microfacet::{Alpha, smith_g1_over_cosine, smith_g2_over_cosine},
     random::even_point,
@@ -25,9 +27,9 @@ use crate::optics::prelude::*;
 use crate::{instructions::level, parallel};
 
 inlined! {
-    /// Factor by which a clear interface refracts, or reflects from within, more than single scattering does, linear RGB. A
-    /// film shares the light otherwise in each channel.
-    pub fn interface_gain<T: Real>(
+    /// The share that single scattering has of what a clear interface refracts, linear RGB; or the last number of its table,
+    /// see [`scattering_table`]. A film shares the light otherwise in each channel.
+    pub fn interface_kept<T: Real>(
         material: &Material<T>,
         surface: &Surface<T>,
         shape: &LobeShape<'_, T>,
@@ -36,17 +38,49 @@ inlined! {
         if !material.has_flag(COMPENSATES) {
             return Vec3::ONE;
         }
-        let is_within = surface.is_within(material);
-        let gain = |channel: usize| {
-            let [_, outside, inside, reflected] = kept_energies(material, surface, shape, channel);
-            let refracted = T::select(is_within, inside, outside);
-            T::ONE / if is_reflected { reflected } else { refracted }
-        };
-        let first = gain(0);
-        if material.has_film == 0 || !material.transmits().any() {
+        let first = channel_kept(material, surface, shape, is_reflected, 0);
+        if material.has_film == 0 {
             return Vec3::splat(first);
         }
-        vec3(first, gain(1), gain(2))
+        let [second, third] = mapped!([1, 2], |channel| channel_kept(
+            material,
+            surface,
+            shape,
+            is_reflected,
+            channel
+        ));
+        vec3(first, second, third)
+    }
+
+    fn channel_kept<T: Real>(
+        material: &Material<T>,
+        surface: &Surface<T>,
+        shape: &LobeShape<'_, T>,
+        is_reflected: bool,
+        channel: usize,
+    ) -> T {
+        if is_reflected {
+            return kept_energy_of(material, surface, shape, [channel, 3]);
+        }
+        let [outside, inside] = mapped!([1, 2], |number| {
+            kept_energy_of(material, surface, shape, [channel, number])
+        });
+        T::select(surface.is_within(material), inside, outside)
+    }
+
+    /// Lanes where what facets reflect more than once goes back into the solid in all directions, by the lobe of the base.
+    pub fn scatters_within<T: Real>(material: &Material<T>, surface: &Surface<T>) -> T::Mask {
+        T::Mask::splat(material.has_flag(COMPENSATES)) & surface.is_within(material)
+    }
+
+    /// The share of light that [`scatters_within`], linear RGB.
+    pub fn scattered_within<T: Real>(
+        material: &Material<T>,
+        surface: &Surface<T>,
+        shape: &LobeShape<'_, T>,
+    ) -> Vec3<T> {
+        let again = Vec3::ONE - interface_kept(material, surface, shape, true) * T::TWO;
+        again.at_least_zero().masked(scatters_within(material, surface))
     }
 
     /// The share that the specular lobe reflects at a half vector, linear RGB, with what its facets scatter more than once;
@@ -74,7 +108,7 @@ inlined! {
         cosine: T,
     ) -> Vec3<T> {
         let (white, one) = (Vec3::ONE, T::ONE);
-        let [kept, ..] = kept_energies(material, surface, shape, 0);
+        let kept = kept_energy_of(material, surface, shape, [0, 0]);
         let gain = |head_on, grazing| facet_gain(head_on, grazing, kept, surface.view_cosine());
         if !terms.has_parts() {
             return fresnel(terms, cosine) * white.mix(gain(fresnel(terms, one), terms.metal_tint), terms.metalness);
@@ -88,7 +122,8 @@ inlined! {
         let is_within = surface.is_within(material);
         let mut clear = gain(Vec3::splat(fresnel_f0(terms.ior)), white);
         if is_within.any() {
-            clear = Vec3::select(is_within, interface_gain(material, surface, shape, true), clear);
+            let within = interface_kept(material, surface, shape, true).map(|kept| one / kept.max(T::HALF));
+            clear = Vec3::select(is_within, within, clear);
         }
         let share = material.transmission_weight.masked(material.ior.differs(one));
         let dielectric = dielectric * white.mix(clear, share);
@@ -106,19 +141,31 @@ inlined! {
         Vec3::ONE + again * ((one - kept) / kept)
     }
 
-    /// Shares that single scattering has of the light for a view, by a channel's table, as in [`scattering_table`].
-    fn kept_energies<T: Real>(
+    /// The cosine at which a lobe's table is read: of a table over the roughness of a stretched lobe, which is a mean over
+    /// azimuths, that of a view to which the mean lobe is as wide as this one is to this view. Facets hide others by that.
+    fn kept_cosine<T: Real>(material: &Material<T>, surface: &Surface<T>) -> T {
+        if material.is_over_azimuth() || !material.anisotropy.differs(T::ZERO).any() {
+            return surface.view_cosine();
+        }
+        let stretch = stretch_from_anisotropy(material.anisotropy);
+        let [wide, narrow] = [stretch, T::ONE / stretch];
+        let wo = local_from_world(&surface.frame, surface.wo);
+        vec3(wo.x * wide, wo.y * narrow, wo.z * T::HALF * (wide + narrow)).normalize().z
+    }
+
+    /// A share that single scattering has of the light for a view: a number in a channel's table, as in [`scattering_table`].
+    fn kept_energy_of<T: Real>(
         material: &Material<T>,
         surface: &Surface<T>,
         shape: &LobeShape<'_, T>,
-        channel: usize,
-    ) -> [T; 4] {
-        let place = surface.view_cosine().safe_sqrt();
+        [channel, number]: [usize; 2],
+    ) -> T {
+        let place = kept_cosine(material, surface).safe_sqrt();
         if material.has_rough_tables != 0 {
             let table = (channel * ROUGH_ALBEDO_LENGTH) as u32;
-            return rough_albedo_lookup(shape.table, table, place, table_row(material, surface));
+            return rough_albedo_number(shape.table, table, number, [place, table_row(material, surface)]);
         }
-        albedo_lookup(shape.table, (channel * ALBEDO_LENGTH) as u32, place)
+        albedo_number(shape.table, (channel * ALBEDO_LENGTH) as u32, number, place)
     }
 }
 
@@ -127,8 +174,9 @@ const LEAST_KEPT: f64 = 0.01;
 
 /// Table of the shares that single scattering has of a material's light, over the root of the view's cosine, and over the
 /// roughness or the azimuth if its albedo tables are: of what a white metal reflects, of what a clear interface refracts from
-/// outside and from within, and of what that reflects from within. One for each channel follows the other where a film shares
-/// the light of an interface. `samples` per node.
+/// outside and from within, and of what that reflects from within. Facets there reflect up to twice as much as once. If that
+/// is not all, the last number is a half less half the share that [`scatters_within`]. One for each channel follows the
+/// other where a film shares the light of an interface. `samples` per node.
 pub fn scattering_table(material: &Material<f64>, samples: u32) -> Vec<f32> {
     let is_over_azimuth = material.is_over_azimuth();
     let is_rough = material.has_rough_tables != 0 && !is_over_azimuth;
@@ -181,24 +229,29 @@ fn kept_shares(
     cosine: f64,
     [metal, passed, outer, inner_passed, inner, met]: [f64; 6],
 ) -> [f32; 4] {
-    // A facet seen from within lets through what it refracts and a part of what is lost; the rest is reflected, as far as that
-    // spreads the weights of paths no further.
-    let through = inner_passed + 0.4 * material.roughness * (1.0 - met) * (1.0 - inner - inner_passed);
-    let most = (1.0 - through).min((2.0 * inner).sqrt());
+    // From within, facets let through what they refract and a part of what is lost; the rest is reflected.
+    let lost = (1.0 - inner - inner_passed).max(0.0);
+    let again = 2.0 * inner_passed.powf(1.4) - 2.23 * met.powf(0.75) * (1.0 - met).powf(2.3);
+    let through = inner_passed + material.roughness.powf(3.3) * lost * again;
+    let through = through.max(0.665 * inner_passed);
     let reflected = match material.ior == 1.0 {
         true => inner,
-        false => most.max(inner / (inner + inner_passed)),
+        false => (1.0 - through).max(inner / (inner + inner_passed).max(1.0)),
     };
     let head_on = Vec3::splat(fresnel_f0(material.fresnel_terms(false).ior));
     let outer = outer * facet_gain(head_on, Vec3::ONE, metal.max(LEAST_KEPT), cosine).x;
     let tiny = f64::MIN_POSITIVE;
     let shares = [
+        metal,
         passed / (1.0 - outer).max(tiny),
         inner_passed / (1.0 - reflected).max(tiny),
-        inner / reflected.max(tiny),
     ];
-    let [outside, inside, reflected] = shares.map(|share| share.max(LEAST_KEPT));
-    [metal.max(LEAST_KEPT), outside, inside, reflected].map(|x| x as f32)
+    let [metal, outside, inside] = shares.map(|share| share.max(LEAST_KEPT));
+    let within = match reflected > 2.0 * inner {
+        true => 0.5 * (1.0 + 2.0 * inner - reflected),
+        false => inner.max(tiny) / reflected.max(tiny),
+    };
+    [metal, outside, inside, within].map(|x| x as f32)
 }
 
 /// The energy that single scattering of GGX keeps with F = 1, for a view of this cosine to the normal.

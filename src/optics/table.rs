@@ -16,8 +16,8 @@ pub fn append_table(tables: &mut Vec<f32>, table: &[f32]) -> u32 {
 
 /// A number of a table's node.
 #[inline(always)]
-pub fn look_up_number<const NUMBER: usize, T: Real>(table: &[f32], node: T) -> T {
-    T::look_up(&table[NUMBER..], T::from_f64(NODE_LENGTH as f64) * node)
+pub fn look_up_number<T: Real>(table: &[f32], number: usize, node: T) -> T {
+    T::look_up(&table[number..], T::from_f64(NODE_LENGTH as f64) * node)
 }
 
 inlined! {

@@ -82,7 +82,7 @@ inlined! {
         out_of_line!(T, {
             let cosine = cosine.max(T::from_f64(LEAST_FILM_COSINE));
             let (eta, k) = (terms.eta, terms.k);
-            let behind = [(eta.x, k.x), (eta.y, k.y), (eta.z, k.z)].map(|(eta, k)| admittances(cosine, eta, k));
+            let behind = mapped!([(eta.x, k.x), (eta.y, k.y), (eta.z, k.z)], |(eta, k)| admittances(cosine, eta, k));
             let filmed = Vec3::ONE - entered(&terms.film, cosine, behind);
             bare.mix(filmed.at_least_zero(), terms.film.weight)
         })
@@ -91,12 +91,14 @@ inlined! {
     /// The change by the film of what a metal known by its colours reflects: its loss is scaled as that of the complex index.
     fn film_on_metal<T: Real>(terms: &FresnelTerms<T>, cosine: T) -> Vec3<T> {
         let (f0, edge) = (terms.metal_f0, terms.edge_tint);
-        let behind = [(f0.x, edge.x), (f0.y, edge.y), (f0.z, edge.z)].map(|(f0, edge)| {
+        let behind = mapped!([(f0.x, edge.x), (f0.y, edge.y), (f0.z, edge.z)], |(f0, edge)| {
             let [eta, k] = index_of_colors(f0, edge);
             admittances(cosine, eta, k)
         });
         let filmed = entered(&terms.film, cosine, behind);
-        let [x, y, z] = behind.map(|behind| entered_bare(cosine, behind).max(T::from_f64(FILM_TINY)));
+        let [x, y, z] = mapped!([behind[0], behind[1], behind[2]], |behind| {
+            entered_bare(cosine, behind).max(T::from_f64(FILM_TINY))
+        });
         let scale = vec3(filmed.x / x, filmed.y / y, filmed.z / z);
         let reflected = fresnel_metal(f0, edge, cosine);
         let lost = Vec3::ONE - reflected;
@@ -170,7 +172,9 @@ inlined! {
     fn entered_bare<T: Real>(cosine: T, behind: Behind<T>) -> T {
         let (zero, one) = (T::ZERO, T::ONE);
         let [perpendicular, parallel] =
-            [behind.perpendicular, behind.parallel].map(|behind| entered_polarised(cosine, behind, zero, [one, zero], one));
+            mapped!([behind.perpendicular, behind.parallel], |behind| {
+                entered_polarised(cosine, behind, zero, [one, zero], one)
+            });
         T::HALF * (perpendicular + parallel)
     }
 

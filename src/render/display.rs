@@ -5,8 +5,8 @@ use std::ops::Range;
 use crate::{
     document::ViewSettings,
     job::film::Image,
-    optics::tone::{Grade, srgb_from_linear, tone_map},
-    optics::vector::vec3,
+    optics::tone::{Grade, display_codes},
+    optics::vector::{Vec3, vec3},
     parallel,
     store::lut,
 };
@@ -54,14 +54,22 @@ pub fn display(image: &Image, view: &ViewSettings) -> Vec<u8> {
     let image = through_lens.as_ref().unwrap_or(image);
     let grade = Grade::new(view.white_k, view.contrast, view.saturation);
     let lut = view.lut.as_deref().and_then(lut::remembered);
-    let encode = |pixel: &[f32; 4]| -> [u8; 4] {
+    let graded = |pixel: &[f32; 4]| {
         let [r, g, b, alpha] = *pixel;
         let straight = if alpha > 0.0 { exposure / alpha } else { 0.0 };
-        let graded = grade.apply(vec3(r * straight, g * straight, b * straight));
-        let mapped = tone_map(view.tone_map, graded);
-        let codes = srgb_from_linear(mapped);
-        let [r, g, b] = lut.as_ref().map_or(codes, |lut| lut.apply(codes)).to_f32();
-        [r, g, b, alpha].map(|x| (255.0 * x.clamp(0.0, 1.0) + 0.5) as u8)
+        grade.apply(vec3(r * straight, g * straight, b * straight))
     };
-    parallel::map_each(&image.pixels, encode).into_flattened()
+    let of_block = |range: Range<usize>| {
+        let pixels = &image.pixels[range];
+        let colors: Vec<_> = pixels.iter().map(graded).collect();
+        let encode = |(&codes, [.., alpha]): (&Vec3<f32>, &[f32; 4])| {
+            let [r, g, b] = lut.as_ref().map_or(codes, |lut| lut.apply(codes)).to_f32();
+            [r, g, b, *alpha].map(|x| (255.0 * x.clamp(0.0, 1.0) + 0.5) as u8)
+        };
+        let codes = display_codes(view.tone_map, &colors);
+        codes.iter().zip(pixels).map(encode).collect::<Vec<_>>()
+    };
+    parallel::map_blocks(image.pixels.len(), of_block)
+        .concat()
+        .into_flattened()
 }

@@ -11,7 +11,7 @@ const PICTURE_BYTES: u64 = 16 + 4 + 12;
 const DENOISED_BYTES: u64 = 184;
 /// Bytes per pixel of the library itself, up to the size from which it uses tiles.
 const DENOISER_BYTES: u64 = 640;
-const DENOISER_BYTES_MOST: u64 = 1_600 << 20;
+const DENOISER_BYTES_MOST: u64 = 700 << 20;
 /// Additional bytes per pixel if the GPU shares the CPU's memory: the GPU's sums.
 const SOFTWARE_GPU_BYTES: u64 = 56;
 

@@ -32,10 +32,7 @@ mod workshop;
 
 pub use crate::compile::{Assets, Reloaded};
 pub use convergence::Measurement;
-pub use engine::{
-    EngineChoice, EngineInfo, EngineKind, MachineOptions, Precision, RayQueries, Sampler, cpu_name,
-    device_for_functions,
-};
+pub use engine::{EngineChoice, EngineInfo, EngineKind, MachineOptions, Precision, Prober, RayQueries, cpu_name};
 pub use error::SessionError;
 pub use output::Layers;
 pub use progress::{Progress, StopReason, beyond_bounces};

@@ -29,9 +29,9 @@ pub enum Task {
     Turntable(Box<Turntable>),
 }
 
-/// State of a task.
+/// Progress of a task.
 #[derive(Clone, Debug, PartialEq)]
-pub enum State {
+pub enum TaskState {
     /// Others are before it.
     Waiting,
     /// The share of it that is done, in [0, 1].
@@ -46,21 +46,21 @@ pub enum State {
 
 /// A task as it is listed.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Entry {
+pub struct QueuedTask {
     /// Unique id.
     pub id: u64,
     /// Name: its file's, with a number if taken.
     pub name: String,
     /// Whether it waits, renders, or how it ended.
-    pub state: State,
+    pub state: TaskState,
     /// When it was added, or began to render.
     pub since: Instant,
 }
 
-impl Entry {
+impl QueuedTask {
     /// Whether it is finished, failed or cancelled.
     pub fn is_over(&self) -> bool {
-        !matches!(self.state, State::Waiting | State::Rendering(_))
+        !matches!(self.state, TaskState::Waiting | TaskState::Rendering(_))
     }
 }
 
@@ -73,7 +73,7 @@ pub struct Queue {
 #[derive(Default)]
 struct Book {
     /// Those that wait with what they are to do.
-    entries: Vec<(Entry, Option<Order>)>,
+    entries: Vec<(QueuedTask, Option<Order>)>,
     /// Ends of tasks not yet reported.
     news: Vec<Result<String, String>>,
     last_id: u64,
@@ -92,12 +92,12 @@ impl Book {
     fn next(&mut self) -> Option<(u64, Order)> {
         let mut waiting = self.entries.iter_mut().filter(|_| !self.is_paused);
         let (entry, order) = waiting.find(|(_, order)| order.is_some())?;
-        (entry.state, entry.since) = (State::Rendering(0.0), Instant::now());
+        (entry.state, entry.since) = (TaskState::Rendering(0.0), Instant::now());
         self.is_cancelled = false;
         Some((entry.id, order.take()?))
     }
 
-    fn set(&mut self, id: u64, state: State) {
+    fn set(&mut self, id: u64, state: TaskState) {
         if let Some((entry, _)) = self.entries.iter_mut().find(|(entry, _)| entry.id == id) {
             entry.state = state;
         }
@@ -105,9 +105,9 @@ impl Book {
 
     fn end(&mut self, id: u64, ended: Result<String, String>) {
         let state = match ended.clone() {
-            Ok(words) if self.is_cancelled => State::Cancelled(words),
-            Ok(words) => State::Done(words),
-            Err(why) => State::Failed(why),
+            Ok(words) if self.is_cancelled => TaskState::Cancelled(words),
+            Ok(words) => TaskState::Done(words),
+            Err(why) => TaskState::Failed(why),
         };
         self.set(id, state);
         self.news.push(ended);
@@ -131,7 +131,7 @@ fn wait<R>(book: &Mutex<Book>, mut take: impl FnMut(&mut Book) -> Option<R>) -> 
 
 /// Reports a task's progress, and waits while paused. Returns false if it is cancelled.
 fn report(book: &Mutex<Book>, id: u64, share: f64) -> bool {
-    lock(book).set(id, State::Rendering(share));
+    lock(book).set(id, TaskState::Rendering(share));
     if lock(book).gives_way {
         std::thread::sleep(GIVES_WAY);
     }
@@ -195,18 +195,18 @@ impl Queue {
     pub fn add(&self, task: Task, engine: EngineChoice) {
         self.change(|book| {
             book.last_id += 1;
-            let entry = Entry {
+            let entry = QueuedTask {
                 since: Instant::now(),
                 id: book.last_id,
                 name: free_name(&book.entries, &task.name()),
-                state: State::Waiting,
+                state: TaskState::Waiting,
             };
             book.entries.push((entry, Some((task, engine))));
         });
     }
 
     /// All tasks, in order.
-    pub fn entries(&self) -> Vec<Entry> {
+    pub fn entries(&self) -> Vec<QueuedTask> {
         lock(&self.book)
             .entries
             .iter()
@@ -226,7 +226,7 @@ impl Queue {
 
     /// Cancels a task, or removes it from the list once it has ended.
     pub fn remove(&self, id: u64) {
-        let is_rendering = |entry: &Entry| entry.id == id && matches!(entry.state, State::Rendering(_));
+        let is_rendering = |entry: &QueuedTask| entry.id == id && matches!(entry.state, TaskState::Rendering(_));
         self.change(|book| {
             if book.entries.iter().any(|(entry, _)| is_rendering(entry)) {
                 book.is_cancelled = true;
@@ -244,7 +244,7 @@ impl Queue {
     /// Moves a waiting task to the front.
     pub fn put_first(&self, id: u64) {
         self.change(|book| {
-            let waiting = |entry: &(Entry, Option<Order>)| entry.1.is_some();
+            let waiting = |entry: &(QueuedTask, Option<Order>)| entry.1.is_some();
             let first = book.entries.iter().position(waiting);
             let from = book.entries.iter().position(|entry| entry.0.id == id && waiting(entry));
             if let (Some(first), Some(from)) = (first, from) {
@@ -290,7 +290,7 @@ impl Task {
 }
 
 /// A unique name: with a number if taken.
-fn free_name(entries: &[(Entry, Option<Order>)], name: &str) -> String {
+fn free_name(entries: &[(QueuedTask, Option<Order>)], name: &str) -> String {
     let numbered = (2..).map(|number| format!("{name} ({number})"));
     let mut names = std::iter::once(name.to_owned()).chain(numbered);
     names

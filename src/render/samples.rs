@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{background::Responder, engine::EngineChoice, engine::Sampler};
+use super::{background::Responder, engine::EngineChoice, engine::Prober};
 use crate::{
     analysis::fit::{Measure, Nearest, nearest_roughness},
     analysis::histogram::{angle_density, angle_histogram},
@@ -73,7 +73,7 @@ pub type SampleAnswer = Result<Arc<SampleReport>, String>;
 
 /// The work that answers queries.
 pub fn answers() -> impl FnMut(SampleQuery, &Responder<'_, SampleAnswer>) + Send + 'static {
-    let mut sampler: Option<(EngineChoice, Sampler)> = None;
+    let mut sampler: Option<(EngineChoice, Prober)> = None;
     move |query, responder| match draw(&mut sampler, &query) {
         Ok(report) => {
             responder.publish(Ok(Arc::new(report.clone())));
@@ -88,14 +88,14 @@ pub fn answers() -> impl FnMut(SampleQuery, &Responder<'_, SampleAnswer>) + Send
     }
 }
 
-fn draw(sampler: &mut Option<(EngineChoice, Sampler)>, query: &SampleQuery) -> Result<SampleReport, String> {
+fn draw(sampler: &mut Option<(EngineChoice, Prober)>, query: &SampleQuery) -> Result<SampleReport, String> {
     let opened = match sampler.take() {
         Some((choice, opened)) if choice == query.engine => opened,
-        _ => Sampler::open(query.engine).map_err(crate::in_words)?,
+        _ => Prober::open(query.engine).map_err(crate::in_words)?,
     };
     let (_, opened) = sampler.insert((query.engine, opened));
     let request = &query.request;
-    let cloud = opened.draw(request).map_err(crate::in_words)?;
+    let cloud = opened.scatter(request).map_err(crate::in_words)?;
     let free = ScatterRequest {
         model: LobeModel {
             horizon: Horizon::None,
@@ -104,7 +104,7 @@ fn draw(sampler: &mut Option<(EngineChoice, Sampler)>, query: &SampleQuery) -> R
         count: BELOW_COUNT,
         ..request.clone()
     };
-    let raw = opened.draw(&free).map_err(crate::in_words)?;
+    let raw = opened.scatter(&free).map_err(crate::in_words)?;
     let mirror = request.middle();
     let below = raw
         .samples

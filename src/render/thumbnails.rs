@@ -8,7 +8,7 @@ use std::{
     time::Duration,
 };
 
-use image::{ImageFormat, RgbaImage};
+use image::RgbaImage;
 
 use super::{
     EngineChoice, Session, SessionError,
@@ -22,7 +22,7 @@ use crate::{
     import::environment::load,
     scene::ModelSource,
     scene::environment::{Environment, EnvironmentSource, thumbnail},
-    store::{picture::png_bytes, preset::material_text, replace::save_atomically},
+    store::{picture::png_bytes, picture::png_image, preset::material_text, replace::save_atomically},
 };
 
 /// Columns and rows of a material's thumbnail.
@@ -142,9 +142,7 @@ pub fn makes(
 }
 
 fn read(path: &Path) -> Option<RgbaImage> {
-    let bytes = std::fs::read(path).ok()?;
-    let picture = image::load_from_memory_with_format(&bytes, ImageFormat::Png).ok()?;
-    Some(picture.into_rgba8())
+    png_image(&std::fs::read(path).ok()?).ok()
 }
 
 fn write(path: &Path, picture: &RgbaImage) -> Result<(), String> {

@@ -110,6 +110,7 @@ impl Camera<f64> {
     }
 
     /// The same camera in another precision.
+    #[inline(always)]
     pub fn cast<T: Real>(&self) -> Camera<T> {
         let vector = |v: Vec3<f64>| Vec3::from_f64(v.to_f64());
         Camera {

@@ -11,10 +11,10 @@ use std::{
 
 /// Progress and cancellation of one task; clones share them.
 #[derive(Clone, Debug, Default)]
-pub struct Loading(Arc<State>);
+pub struct Loading(Arc<LoadingState>);
 
 #[derive(Debug, Default)]
-struct State {
+struct LoadingState {
     doing: Mutex<String>,
     is_cancelled: AtomicBool,
     /// Files that were named and not allowed, since they were last asked for.

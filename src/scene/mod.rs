@@ -42,5 +42,5 @@ pub use loading::{Cancelled, Loading};
 pub use mesh::MeshInstance;
 pub use model::{AlphaMode, Filter, Model, ModelObject, ModelOptions, ModelSource, Slot, Texture, TextureRef, Wrap};
 pub use part::{NO_OBJECT, Part, Vertex};
-pub use report::{Entry, Fate, ImportReport};
+pub use report::{Fate, ImportNote, ImportReport};
 pub use stage::{LIGHTS_MAX, LightKind, ModelCamera, ModelLens, ModelLight};

@@ -36,7 +36,7 @@ impl Fate {
 
 /// One kind of part in a file, and its fate.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Entry {
+pub struct ImportNote {
     /// Whether the part was used, approximated, ignored or missing.
     pub fate: Fate,
     /// Description, and what is shown instead.
@@ -50,7 +50,7 @@ pub struct Entry {
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct ImportReport {
     /// One entry per kind of part, in order of occurrence.
-    pub entries: Vec<Entry>,
+    pub entries: Vec<ImportNote>,
 }
 
 impl ImportReport {
@@ -67,7 +67,7 @@ impl ImportReport {
             .map(str::to_owned)
             .collect();
         let what = what.into();
-        self.add(Entry {
+        self.add(ImportNote {
             fate,
             what,
             count,
@@ -80,7 +80,7 @@ impl ImportReport {
         other.entries.into_iter().for_each(|entry| self.add(entry));
     }
 
-    fn add(&mut self, more: Entry) {
+    fn add(&mut self, more: ImportNote) {
         if more.count == 0 {
             return;
         }
@@ -97,7 +97,7 @@ impl ImportReport {
     }
 
     /// The entries with this fate.
-    pub fn of(&self, fate: Fate) -> impl Iterator<Item = &Entry> {
+    pub fn of(&self, fate: Fate) -> impl Iterator<Item = &ImportNote> {
         self.entries.iter().filter(move |entry| entry.fate == fate)
     }
 
@@ -111,7 +111,7 @@ impl ImportReport {
         self.entries
             .iter()
             .filter(|entry| entry.fate != Fate::Used)
-            .map(Entry::line)
+            .map(ImportNote::line)
             .collect()
     }
 
@@ -127,7 +127,7 @@ impl ImportReport {
     }
 }
 
-impl Entry {
+impl ImportNote {
     /// The entry in one line: fate, description, count, name.
     pub fn line(&self) -> String {
         let mut line = format!("{}: {}", self.fate.label(), self.what);

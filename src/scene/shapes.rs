@@ -141,7 +141,7 @@ fn cut_on_sphere(&[a, b, c]: &[DVec3; 3]) -> [[DVec3; 3]; 4] {
 
 /// A rectangle around `center` of two triangles, with half its sides as vectors: u runs along `half_u`, v along
 /// `half_v`, both from −`uv_half_side` to `uv_half_side` about ½. It faces `half_v` × `half_u`.
-pub(super) fn rectangle(center: DVec3, half_u: DVec3, half_v: DVec3, uv_half_side: f32, slot: u32) -> Mesh {
+pub fn rectangle(center: DVec3, half_u: DVec3, half_v: DVec3, uv_half_side: f32, slot: u32) -> Mesh {
     let mut flat = Flat::new(center, half_u, half_v);
     let corners = [(-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0), (1.0, -1.0)];
     let [a, b, c, d] = corners.map(|(u, v)| flat.push(dvec2(u, v), uv_half_side));
@@ -268,7 +268,7 @@ fn stand(ball: DVec2) -> Profile {
 
 /// A profile curve in the half plane (distance from the axis, height), revolved about the Y axis. The outside is left of its
 /// direction. Pieces that meet at an angle make a crease.
-struct Profile {
+pub struct Profile {
     points: Vec<ProfilePoint>,
     end: DVec2,
 }
@@ -280,7 +280,7 @@ struct ProfilePoint {
 }
 
 impl Profile {
-    fn start(place: DVec2) -> Self {
+    pub fn start(place: DVec2) -> Self {
         Self {
             points: Vec::new(),
             end: place,
@@ -289,7 +289,7 @@ impl Profile {
 
     /// An arc around `center` from the curve's current end, in `steps` steps. Falling angles put the circle's outside on the
     /// surface's outside, growing ones its inside.
-    fn arc(&mut self, center: DVec2, radius: f64, from_deg: f64, to_deg: f64, steps: u32) {
+    pub fn arc(&mut self, center: DVec2, radius: f64, from_deg: f64, to_deg: f64, steps: u32) {
         let side = if to_deg < from_deg { 1.0 } else { -1.0 };
         for step in 0..=steps {
             let direction = polar(
@@ -301,7 +301,7 @@ impl Profile {
     }
 
     /// A straight piece to `place` in `steps` steps.
-    fn line(&mut self, place: DVec2, steps: u32) {
+    pub fn line(&mut self, place: DVec2, steps: u32) {
         let from = self.end;
         let normal = (place - from).perp().normalize();
         for step in 0..=steps {
@@ -329,7 +329,7 @@ impl Profile {
     }
 
     /// The surface in `around` cells about the axis; u runs around from +Z over +X, v along the curve by length.
-    fn revolve(&self, around: u32, slot: u32) -> Mesh {
+    pub fn revolve(&self, around: u32, slot: u32) -> Mesh {
         let mut mesh = Mesh::default();
         let mut lengths = vec![0.0];
         for pair in self.points.windows(2) {

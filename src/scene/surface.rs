@@ -271,19 +271,26 @@ pub fn surfaces_at<T: Real>(
         let outward = normalize_or(interpolated, Vec3::select(is_back, -normal, normal));
         let normals = [smoothed.to_each(), tangent.to_each(), outward.to_each()];
         let sides = side.to_each();
-        let bent = |texture: u32, strength: T::Scalar| {
+        let of_map = [
+            (&mut shading, TextureTarget::Normal, of_lane.normal_strength),
+            (
+                &mut coat_normal,
+                TextureTarget::CoatNormal,
+                of_lane.coat_normal_strength,
+            ),
+        ];
+        for (bent, target, strength) in of_map {
+            let texture = of_lane.texture(target);
             if texture == NO_TEXTURE {
-                return smooth;
+                continue;
             }
             let mapped = Vec3::from_lanes(|lane| {
                 let normals = [0, 1, 2].map(|i| normals[i][lane]);
                 let (uvs, side) = (uvs[lane], sides[lane]);
                 mapped_normal(textures, (texture, strength), uvs, normals, side)
             });
-            lifted_normal(bent_normal(Vec3::select(is_turned, -mapped, mapped), wo), normal, wo)
-        };
-        shading = bent(of_lane.texture(TextureTarget::Normal), of_lane.normal_strength);
-        coat_normal = bent(of_lane.texture(TextureTarget::CoatNormal), of_lane.coat_normal_strength);
+            *bent = lifted_normal(bent_normal(Vec3::select(is_turned, -mapped, mapped), wo), normal, wo);
+        }
     }
     let frame = if is_stretched {
         // The rotation is towards the bitangent; `shading` is on the viewer's side, the bitangent is defined from outside.

@@ -89,7 +89,7 @@ pub fn still_life() -> Document {
         yaw_deg,
         ..GroundSettings::default()
     };
-    document.lighting.ground_color = [0.34, 0.29, 0.25];
+    document.lighting.ground_color = [0.36, 0.32, 0.285];
     document
 }
 

@@ -1,12 +1,12 @@
 //! Reading and writing JSON files with care.
 
-use std::{borrow::Cow, io::Read as _, path::Path, path::PathBuf};
+use std::{borrow::Cow, io::ErrorKind, path::Path, path::PathBuf};
 
 use serde_json::{Map, Value as Json};
 
 use super::error::{FileError, SIZE_MAX};
 use crate::{
-    import::{limits, picture::shipped},
+    import::limits,
     scene::path_text::{path_of_text, path_text},
 };
 
@@ -18,21 +18,12 @@ pub struct Loaded<T> {
     pub warnings: Vec<String>,
 }
 
-/// A whole file, unless it is far too large.
+/// A whole file, or a shipped map, unless it is far too large.
 pub(super) fn read(path: &Path) -> Result<Vec<u8>, FileError> {
-    if let Some(bytes) = shipped(path) {
-        return Ok(bytes.to_vec());
-    }
-    let mut bytes = Vec::new();
-    let result = limits::open(path).and_then(|file| file.take(SIZE_MAX + 1).read_to_end(&mut bytes));
-    match result {
-        Err(source) => Err(FileError::Read {
-            path: path.to_owned(),
-            source,
-        }),
-        Ok(_) if bytes.len() as u64 > SIZE_MAX => Err(FileError::TooLarge { path: path.to_owned() }),
-        Ok(_) => Ok(bytes),
-    }
+    limits::read(path, SIZE_MAX).map_err(|error| match error.kind() {
+        ErrorKind::FileTooLarge => FileError::TooLarge { path: path.to_owned() },
+        _ => FileError::reading(path)(error),
+    })
 }
 
 /// The folder of a file.

@@ -8,13 +8,13 @@ use crate::{document::MaterialSettings, import::endings::has_ending};
 
 /// A file of the folder.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Entry {
+pub struct LibraryMaterial {
     pub path: PathBuf,
     /// Its material, or what is wrong with it.
     pub material: Result<MaterialSettings, String>,
 }
 
-impl Entry {
+impl LibraryMaterial {
     /// What to call it: the material's name, else the file's.
     pub fn name(&self) -> String {
         match &self.material {
@@ -36,10 +36,10 @@ pub(super) fn paths_in(folder: &Path) -> Result<Vec<PathBuf>, FileError> {
 }
 
 /// The materials in a folder by name; none where it is not there.
-pub fn list(folder: &Path) -> Result<Vec<Entry>, FileError> {
+pub fn list(folder: &Path) -> Result<Vec<LibraryMaterial>, FileError> {
     let paths = paths_in(folder)?.into_iter().filter_map(material_at);
-    let mut entries: Vec<Entry> = paths
-        .map(|path| Entry {
+    let mut entries: Vec<LibraryMaterial> = paths
+        .map(|path| LibraryMaterial {
             material: load_material(&path).map(|loaded| loaded.value).map_err(crate::in_words),
             path,
         })

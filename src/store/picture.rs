@@ -7,6 +7,7 @@ use std::{
     path::Path,
 };
 
+use image::{DynamicImage, ImageResult, RgbaImage, codecs::png::PngDecoder};
 use png::text_metadata::ITXtChunk;
 
 use super::{FileError, Loaded, error::SIZE_MAX, project};
@@ -16,6 +17,11 @@ use crate::{document::Document, import::limits};
 pub const KEYWORD: &str = "glossmith";
 /// What every PNG file begins with.
 const SIGNATURE: [u8; 8] = *b"\x89PNG\r\n\x1a\n";
+
+/// The image in a PNG file. `image::load_from_memory` would bring every other decoder into the program once more.
+pub fn png_image(bytes: &[u8]) -> ImageResult<RgbaImage> {
+    DynamicImage::from_decoder(PngDecoder::new(Cursor::new(bytes))?).map(DynamicImage::into_rgba8)
+}
 
 /// Whether a file begins as PNG files do.
 pub fn is_png(path: &Path) -> bool {

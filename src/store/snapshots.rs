@@ -7,7 +7,7 @@ use image::RgbaImage;
 use super::{
     FileError,
     library::{free_path, moved, paths_in},
-    picture::{parse_picture_document, png_bytes},
+    picture::{parse_picture_document, png_bytes, png_image},
     project::document_text,
     replace::save_atomically,
 };
@@ -46,13 +46,13 @@ pub fn list(folder: &Path) -> Result<(Vec<Pinned>, Vec<String>), FileError> {
 fn read(path: &Path) -> Result<Pinned, FileError> {
     let bytes = fs::read(path).map_err(FileError::reading(path))?;
     let document = parse_picture_document(path, Cursor::new(&bytes))?.value;
-    let picture = image::load_from_memory_with_format(&bytes, image::ImageFormat::Png)
+    let picture = png_image(&bytes)
         .map_err(|error| FileError::content(path, format!("not a whole PNG image ({error}); delete it")))?;
     Ok(Pinned {
         path: path.to_owned(),
         name: path.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
         document,
-        picture: picture.into_rgba8(),
+        picture,
     })
 }
 

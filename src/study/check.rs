@@ -18,7 +18,7 @@ use crate::{
         vector::Vec3,
     },
     parallel,
-    render::{EngineChoice, Sampler, Session, SessionError},
+    render::{EngineChoice, Prober, Session, SessionError},
     scene::{ModelSource, environment::EnvironmentSource},
     study::small_document,
 };
@@ -262,7 +262,7 @@ fn unless_stopped<T>(stop: &AtomicBool, work: impl FnOnce() -> T) -> Option<T> {
 fn samples(options: CheckOptions, stop: &AtomicBool, told: &dyn Fn(f64)) -> Result<Vec<Check>, SessionError> {
     let cases = sample_cases(options.thorough);
     let cases_total = cases.len();
-    let sampler = Sampler::open(options.engine)?;
+    let prober = Prober::open(options.engine)?;
     let limit = sidak_level(LEVEL, cases.len());
     let check = |(case, cloud): (&ScatterRequest, &ScatterCloud)| {
         unless_stopped(stop, || {
@@ -276,7 +276,7 @@ fn samples(options: CheckOptions, stop: &AtomicBool, told: &dyn Fn(f64)) -> Resu
     for cases in cases.chunks(part) {
         let clouds = cases
             .iter()
-            .map_while(|case| unless_stopped(stop, || sampler.draw(case)));
+            .map_while(|case| unless_stopped(stop, || prober.scatter(case)));
         let clouds = clouds.collect::<Result<Vec<_>, _>>()?;
         let of_part = parallel::map(clouds.len(), |place| check((&cases[place], &clouds[place])));
         checks.extend(of_part.into_iter().flatten());

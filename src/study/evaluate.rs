@@ -3,7 +3,6 @@
 //! The frame has the surface's outer normal as +z and the tangent, before the material's rotation, as +x. A viewer below
 //! sees the surface from within.
 
-use super::probe::Prober;
 use crate::{
     compile::compile,
     cpu::probe as cpu,
@@ -15,7 +14,7 @@ use crate::{
         random::{Sequence, random_pair, random_state},
         vector::{Vec3, vec3},
     },
-    render::{EngineChoice, Precision},
+    render::{EngineChoice, Precision, Prober},
 };
 
 /// Independent randomisations of the Sobol sequence, whose spread gives the standard errors of albedos.

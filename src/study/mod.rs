@@ -1,6 +1,6 @@
 //! What is found out with the renderer. Studies of cost and accuracy: a race of techniques, a ledger of effects and settings,
 //! and a benchmark, all by the engine's own clock, in interleaved trials. Proofs: checks and hard cases.
-//! Questions: values of a material, single functions of an engine, and the account of a path.
+//! Questions: values of a material, and the account of a path.
 
 pub mod benchmark;
 pub mod check;
@@ -9,7 +9,6 @@ pub mod evaluate;
 pub mod explain;
 pub mod hard;
 pub mod ledger;
-pub mod probe;
 pub mod race;
 mod references;
 pub mod technique;

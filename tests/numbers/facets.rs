@@ -5,8 +5,9 @@ use crate::material_samples::compiled;
 use glossmith::optics::{
     frame::frame_from_normal,
     layer::{Layers, MaterialNumbers, MaterialSample, material_evaluate, material_layers, material_sample},
-    material::{Material, Surface},
+    material::{HOLDS_INTEGRALS, Material, Surface},
     random::{Sequence, random_pair, random_state},
+    scattering::scattering_table,
     vector::{Vec3, vec3},
 };
 
@@ -71,12 +72,13 @@ impl Case {
     }
 }
 
-/// What a direction was drawn with is what it is weighed with when light is drawn towards it.
+/// What a direction was drawn with is what it is weighed with when light is drawn towards it: of facets alone, as each layer
+/// has a weight of its own.
 #[test]
 fn densities_of_samples_are_those_that_compete() {
     for assignments in CASES.iter().filter(|case| !case.contains("transmission.weight=0.6")) {
         for view in VIEWS {
-            let case = Case::new(assignments, view);
+            let case = Case::new(&format!("{assignments} specular.multiple_scattering=off"), view);
             for i in 0..2000 {
                 let drawn = case.draw(i);
                 let told = case.density(drawn.wi);
@@ -110,6 +112,51 @@ fn no_sample_of_visible_facets_outweighs_the_others() {
                 1.0 / 0.95 + 1e-9
             };
             assert!(most <= limit, "{assignments} seen at {view:?}: {most}");
+        }
+    }
+}
+
+/// Where a texture changes the roughness of a stretched white metal, the table is a mean over all azimuths of the view: read
+/// at the view to which the mean lobe is as wide, it keeps nearly all light at each.
+#[test]
+fn a_stretched_lobe_of_any_roughness_keeps_its_light_at_every_azimuth() {
+    for (roughness, anisotropy, limit) in [(0.3, 0.9, 0.03), (0.5, 0.9, 0.1), (0.8, 0.9, 0.1), (0.8, 0.3, 0.04)] {
+        let metal = format!(
+            "specular.lobe=ggx base.metalness=1 base.color=1,1,1 specular.fresnel=none \
+             specular.anisotropy={anisotropy} specular.roughness={roughness}"
+        );
+        let (materials, _) = compiled(&metal);
+        // As under a texture of the roughness.
+        let material = Material {
+            has_rough_tables: HOLDS_INTEGRALS,
+            lobe_table: 0,
+            ..materials[0]
+        }
+        .cast();
+        let tables = scattering_table(&material, 2048);
+        for cosine in [0.9, 0.6, 0.3, 0.15] {
+            for azimuth_deg in [0.0, 30.0, 60.0, 90.0_f64] {
+                let (sin, cos) = azimuth_deg.to_radians().sin_cos();
+                let sine = f64::sqrt(1.0 - cosine * cosine);
+                let surface = Surface::upwards(vec3(0.0, 0.0, 1.0));
+                let across = surface.frame.tangent * (sine * cos) + surface.frame.bitangent * (sine * sin);
+                let surface = Surface {
+                    wo: across + surface.normal * cosine,
+                    ..surface
+                };
+                let layers = material_layers(&material, &tables, &surface);
+                let case = Case {
+                    material,
+                    tables: tables.clone(),
+                    surface,
+                    layers,
+                };
+                let kept = (0..20_000).map(|i| case.draw(i).throughput.x).sum::<f64>() / 20_000.0;
+                assert!(
+                    (kept - 1.0).abs() < limit,
+                    "{metal} at {cosine}, {azimuth_deg} degrees: {kept}"
+                );
+            }
         }
     }
 }

@@ -4,7 +4,6 @@ use std::mem::offset_of;
 
 use glossmith::{
     gpu::layout::{Globals, PixelColors, PixelStatistics, Tile, Triangle},
-    gpu::scatter::Scatter,
     job::guides::GuideSums,
     optics::material::{FIELDS, Field, Material},
     optics::target::TextureTarget,
@@ -77,9 +76,6 @@ fn rust_layouts() -> Vec<Layout> {
         },
         layout!(Triangle: Triangle { corners }),
         layout!(Vertex: Vertex { normal, red_green, tangent, blue_side, uvs }),
-        layout!(Scatter: Scatter {
-            wo, roughness, anisotropy, eta, lobe, curve, horizon, seed, first, count,
-        }),
     ]
 }
 

@@ -12,8 +12,7 @@ use glossmith::{
         random::{Sequence, random_pair, random_state},
         vector::{Vec3, vec3},
     },
-    render::EngineChoice,
-    study::probe::Prober,
+    render::{EngineChoice, Prober},
 };
 
 /// Samples of a case, of which the other density of its row is seen.

@@ -3,10 +3,9 @@
 use std::sync::atomic::AtomicBool;
 
 use glossmith::{
-    cpu,
     job::scatter::ScatterRequest,
     optics::lobe::Lobe,
-    render::EngineChoice,
+    render::{EngineChoice, Prober},
     study::check::{Check, CheckOptions, chi_square, run, sample_cases},
 };
 
@@ -45,7 +44,7 @@ fn a_density_off_by_two_per_cent_fails() {
             count: 2_000_000,
             ..case
         };
-        let cloud = cpu::scatter::scatter(&case);
+        let cloud = Prober::Cpu.scatter(&case).unwrap();
         let tilted = chi_square(&case, &cloud, |wi| if wi.y > 0.0 { 1.02 } else { 0.98 });
         assert!(tilted < 1e-6, "{case:?}: p = {tilted}");
         let right = chi_square(&case, &cloud, |_| 1.0);

@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use crate::cli_support::{Workplace, read_exr};
+use crate::cli_support::{Workplace, read_exr, write_hdr};
 
 /// The sRGB colour #336699, linear.
 const BLUE: [f32; 3] = [0.033_104_77, 0.132_868_33, 0.318_546_78];
@@ -86,6 +86,44 @@ fn cameras_stand_where_they_are_put() {
     for arguments in other {
         assert!(orbit.difference(&render(arguments)) > 0.01, "{arguments}");
     }
+}
+
+/// Rays that have passed 4096 sheets see what is behind all, and that is told; of hundreds each takes its share.
+#[test]
+fn sheets_beyond_the_last_that_a_ray_passes_are_told() {
+    let place = Workplace::new();
+    for (sheets, opacity, size, seen, cut) in [(300, 1e-3, 32, 0.7407, 0.0), (4500, 1e-5, 8, 0.9599, 0.9599)] {
+        let sheet = |i: u32| {
+            let y = 0.5 * f64::from(i) / f64::from(sheets);
+            format!("v -1 {y} -1\nv -1 {y} 1\nv 1 {y} 1\nv 1 {y} -1\nf -4 -3 -2 -1\n")
+        };
+        place.write("sheets.obj", (0..sheets).map(sheet).collect::<String>().as_bytes());
+        let report = place.report(&format!(
+            "--model sheets.obj --environment furnace --camera-orbit 0,90 --camera-distance 1 --fov 5 \
+             --size {size}x{size} --samples 4 --set base.metalness=0 --set base.color=0,0,0 --set specular.weight=0 --set geometry.opacity={opacity}"
+        ));
+        for (key, right) in [("mean_luminance", seen), ("cut_energy", cut)] {
+            let found = report[key].as_f64().unwrap();
+            assert!(
+                (found - right).abs() < 0.04,
+                "{sheets} sheets, {key}: {found} for {right}"
+            );
+        }
+    }
+}
+
+/// A pixel of 1e30 is finite. Its samples are left out, and the message says which such are.
+#[test]
+fn samples_of_a_pixel_of_1e30_are_left_out_and_told() {
+    let place = Workplace::new();
+    let path = place.path("bright.hdr");
+    write_hdr(&path, 16, 8, |x, y| [if (x, y) == (4, 2) { 1e30 } else { 0.5 }; 3]);
+    let scene = "render --model sphere --environment bright.hdr --size 16x16 --samples 4 --engine cpu -o b.exr";
+    let said = place.done(&format!("{scene} --report b.json")).stderr;
+    let report: Value = serde_json::from_str(&place.read("b.json")).unwrap();
+    let dropped = report["dropped_samples"].as_u64().unwrap();
+    let told = format!("{dropped} samples were left out: not finite, negative, or above 1e18");
+    assert!(dropped > 0 && said.contains(&told), "{told}: {said}");
 }
 
 #[test]

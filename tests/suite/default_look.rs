@@ -10,7 +10,10 @@ use glossmith::{
         vector::Vec3,
     },
     render::{EngineChoice, Session, display::display},
-    scene::{ModelSource, environment::EnvironmentSource},
+    scene::{
+        ModelSource,
+        environment::{EnvironmentSource, texel_direction},
+    },
     store::material_by_name,
 };
 
@@ -86,13 +89,41 @@ fn gold_and_copper_have_their_hue_and_saturation() {
     }
 }
 
+/// What lies level gets neutral light, and white materials are as light as they are white.
+#[test]
+fn white_is_white_in_the_light_of_the_start() {
+    let light = EnvironmentSource::default().computed().expect("built in");
+    let mut irradiance = Vec3::splat(0.0);
+    for row in 0..light.height / 2 {
+        for column in 0..light.width {
+            let height = texel_direction([column, row], [light.width, light.height]).y;
+            let [r, g, b, _] = light.texels[(row * light.width + column) as usize];
+            irradiance = irradiance + Vec3::from_f32([r, g, b]) * (height * (1.0 - height * height).sqrt());
+        }
+    }
+    let mean = (irradiance.x + irradiance.y + irradiance.z) / 3.0;
+    for (channel, of_mean) in (irradiance / mean).to_f64().into_iter().enumerate() {
+        assert!(
+            (of_mean - 1.0).abs() < 0.02,
+            "channel {channel}: {of_mean:.3} of the mean"
+        );
+    }
+    for name in ["plastic-white", "porcelain"] {
+        let [lightness, chroma, _] = ball(name, EnvironmentSource::default(), ToneCurve::default());
+        assert!(
+            lightness > 70.0 && chroma < 5.0,
+            "{name}: lightness {lightness:.1}, chroma {chroma:.1}"
+        );
+    }
+}
+
 /// The range of hues, in degrees, and the least chroma; without a hue what is to be grey, with the most chroma.
 const LOOKS: [(&str, Option<[f64; 2]>, f64); 6] = [
     ("gold", Some([72.0, 98.0]), 25.0),
     ("copper", Some([20.0, 65.0]), 12.0),
     ("car-paint-red", Some([15.0, 45.0]), 40.0),
     ("chrome", None, 9.0),
-    ("porcelain", None, 12.0),
+    ("porcelain", None, 5.0),
     ("rubber", None, 9.0),
 ];
 

@@ -8,7 +8,7 @@ use glossmith::{
     job::film::{Extras, Film, Image},
     job::guides::GuideSums,
     render::EngineChoice,
-    render::denoise::{Denoised, Denoiser, Noisy},
+    render::denoise::{Denoised, Denoiser, Noisy, fetch::fetch_into},
     scene::ModelSource,
 };
 
@@ -300,4 +300,56 @@ fn rendering_stops_where_the_denoised_picture_is_as_exact_as_was_asked_for() {
     assert!(auto["denoised_error"].as_f64().unwrap() <= 0.15, "{auto}");
     let samples = |report: &serde_json::Value| report["mean_samples_per_pixel"].as_f64().unwrap();
     assert!(samples(&auto) < 0.7 * samples(&plain), "{auto} {plain}");
+}
+
+/// Installers as pip is called: `install --no-deps --target FOLDER PACKAGE`. What they do, whether someone stops them at the
+/// first share that is not 0, and what is said.
+#[cfg(unix)]
+const INSTALLERS: [(&str, bool, Result<(), &str>); 5] = [
+    (
+        "mkdir -p $4/pyoidn/oidn/lib; cd $4/pyoidn/oidn/lib; touch libtbb.so.12 libOpenImageDenoise_core.so.2 \
+         libOpenImageDenoise_device_cpu.so.2 libOpenImageDenoise.so.2",
+        false,
+        Ok(()),
+    ),
+    (
+        "head -c 9000000 /dev/zero > $TMPDIR/wheel; exec sleep 600",
+        true,
+        Err("was stopped"),
+    ),
+    ("echo 'ERROR: no network' >&2; exit 1", false, Err("ERROR: no network")),
+    (
+        "echo 'No module named pip' >&2; exit 1",
+        false,
+        Err("install python3-pip"),
+    ),
+    ("true", false, Err("has no libtbb.so.12")),
+];
+
+/// The denoiser comes whole or not at all, and a stopped download leaves nothing behind.
+#[cfg(unix)]
+#[test]
+fn the_denoiser_is_fetched_or_nothing_is() {
+    for (script, stops, expected) in INSTALLERS {
+        let folder = tempfile::tempdir().expect("a folder");
+        let to = folder.path().join("glossmith");
+        let shares = std::cell::RefCell::new(vec![0.0]);
+        let outcome = fetch_into(&to, &[&["no-such-installer"], &["sh", "-c", script, "sh"]], &|share| {
+            shares.borrow_mut().push(share);
+            !stops || share == 0.0
+        });
+        match (&outcome, expected) {
+            (Ok(()), Ok(())) => {}
+            (Err(why), Err(part)) if why.contains(part) => {}
+            _ => panic!("{script}: {outcome:?}"),
+        }
+        assert!(shares.borrow().is_sorted(), "{script}: {shares:?}");
+        assert_eq!(
+            stops,
+            shares.borrow().iter().any(|share| *share > 0.0),
+            "{script}: {shares:?}"
+        );
+        let files = std::fs::read_dir(&to).expect("made").count();
+        assert_eq!(files, if outcome.is_ok() { 4 } else { 0 }, "{script}");
+    }
 }

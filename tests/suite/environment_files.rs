@@ -167,6 +167,16 @@ fn hdr_headers_are_heeded() {
             [0.5, 1.0, 0.5],
         ),
         (
+            "exposures",
+            format!("#?RADIANCE\nEXPOSURE=2.5\n{format}\nEXPOSURE= 0.2\nCOLORCORR=1 0.5 1\n\n-Y 1 +X 2\n"),
+            [2.0, 2.0, 0.5],
+        ),
+        (
+            "factors that nothing undoes",
+            format!("#?RADIANCE\n{format}\nEXPOSURE=0\nEXPOSURE=much\nCOLORCORR=1 -1 1e-60\n\n-Y 1 +X 2\n"),
+            [1.0, 0.5, 0.25],
+        ),
+        (
             // By the matrix of ITU-R BT.2087.
             "primaries",
             format!("#?RADIANCE\n{format}\nPRIMARIES=.708 .292 .17 .797 .131 .046 .3127 .329\n\n-Y 1 +X 2\n"),

@@ -1,14 +1,17 @@
 //! Details of what other programs' formats hold: each parameter where it belongs, and nothing said that is not so.
 
 use glossmith::{
-    document::{CoatLobe, ImportLobe, MaterialSettings, assign},
+    document::{CoatLobe, Document, ImportLobe, MaterialSettings, assign},
     import::gltf_from_widths,
     import::load,
     optics::fresnel::Fresnel,
     optics::lobe::Lobe,
     scene::ModelSource,
     scene::texture::{TextureChannel, TextureTarget, UserTexture},
-    store::{exchange::ReadOptions, exchange::read, load_material, save_document, save_material},
+    store::{
+        exchange::{ReadOptions, Subject, by_name, prepare, read, report::Entry},
+        load_material, save_document, save_material,
+    },
 };
 use serde_json::Value as Json;
 
@@ -299,12 +302,13 @@ fn the_usual_nodes_of_materialx_are_computed() {
     let found = base_colors(&place, &NODES.iter().enumerate().map(element).collect::<String>());
     assert_eq!(found.len(), NODES.len());
     for (found, (kind, .., expected)) in found.iter().zip(NODES) {
-        let is_near = found
-            .iter()
-            .zip(expected)
-            .all(|(found, expected)| (found - expected).abs() < 1e-5);
-        assert!(is_near, "{kind}: {found:?} and {expected:?}");
+        assert!(distance(*found, *expected) < 1e-5, "{kind}: {found:?} and {expected:?}");
     }
+}
+
+fn distance(found: [f32; 3], expected: [f32; 3]) -> f32 {
+    let apart = |(found, expected): (f32, f32)| (found - expected).abs();
+    found.into_iter().zip(expected).map(apart).fold(0.0, f32::max)
 }
 
 #[test]
@@ -319,7 +323,8 @@ fn graphs_of_materialx_are_followed_through_their_outputs_and_interfaces() {
         <separate3 name=\"parts\"><input name=\"in\" nodename=\"half\"/></separate3>\
         <output name=\"a\" nodename=\"half\"/><output name=\"b\" nodename=\"parts\" output=\"outg\"/></nodegraph>\
         <gltf_colorimage name=\"p\"><input name=\"file\" type=\"filename\" value=\"a.png\"/></gltf_colorimage>\
-        <invert name=\"i\"><input name=\"in\" nodename=\"p\"/></invert>";
+        <invert name=\"i\"><input name=\"in\" nodename=\"p\"/></invert>\
+        <power name=\"s\"><input name=\"in1\" nodename=\"p\"/><input name=\"in2\" value=\"2\"/></power>";
     let connections = [
         ("nodegraph=\"g\" output=\"a\"", [0.25, 0.5, 0.0]),
         ("nodegraph=\"g\" output=\"b\"", [0.5; 3]),
@@ -327,14 +332,18 @@ fn graphs_of_materialx_are_followed_through_their_outputs_and_interfaces() {
         // A texture of its own, which multiplies white.
         ("nodename=\"p\" output=\"outcolor\"", [1.0; 3]),
         ("nodename=\"p\" output=\"outa\"", [0.4; 3]),
-        ("nodename=\"i\"", [0.5, 0.8, 0.0]),
+        // So does it inverted; what is no multiple of it is computed of its mean.
+        ("nodename=\"i\"", [1.0; 3]),
+        ("nodename=\"s\"", [0.25, 0.04, 1.0]),
     ];
     let surfaces = connections
         .iter()
         .enumerate()
         .map(|(number, (connection, _))| surface(number, connection));
     let found = base_colors(&place, &[document.to_owned(), surfaces.collect()].concat());
-    assert_eq!(found, connections.map(|(_, color)| color));
+    for (found, (connection, expected)) in found.iter().zip(connections) {
+        assert!(distance(*found, expected) < 1e-5, "{connection}: {found:?}");
+    }
 }
 
 #[test]
@@ -355,9 +364,7 @@ fn reads_as(place: &Workplace, name: &str, text: &str, expected: [f32; 3], words
     };
     let subject = read(&place.path(name), options).unwrap_or_else(|error| panic!("{text}: {error}"));
     let (found, told) = (subject.materials[0].base_color, format!("{:?}", subject.losses[0]));
-    let apart = |(found, expected): (f32, f32)| (found - expected).abs();
-    let worst = found.into_iter().zip(expected).map(apart).fold(0.0, f32::max);
-    assert!(worst < 2e-4, "{text}: {found:?}, not {expected:?}");
+    assert!(distance(found, expected) < 2e-4, "{text}: {found:?}, not {expected:?}");
     assert_eq!(
         told.contains(words),
         !words.is_empty() || told == "[]",
@@ -589,10 +596,8 @@ fn materials_of_usd_are_read_by_way_of_their_connections() {
     }
 }
 
-/// Textures of a material go beside the document and come back from there, with the exact parameters and without.
-#[test]
-fn textures_of_a_material_travel_with_materialx() {
-    let place = Workplace::new();
+/// A material with textures that are placed, weakened and inverted, and the folder that it goes to.
+fn textured(place: &Workplace) -> MaterialSettings {
     let picture = image::RgbImage::from_fn(4, 4, |x, y| image::Rgb([60 * x as u8, 60 * y as u8, 200]));
     picture.save(place.path("t.png")).unwrap();
     std::fs::create_dir(place.path("out")).unwrap();
@@ -600,57 +605,279 @@ fn textures_of_a_material_travel_with_materialx() {
         base_color: [0.5, 0.25, 1.0],
         roughness: 0.5,
         normal_strength: 0.5,
+        transmission_weight: 0.0,
         ..glass()
     };
-    material.transmission_weight = 0.0;
+    let of = || UserTexture::of(place.path("t.png"));
     let placed = UserTexture {
         scale: 2.0,
         stretch: 1.5,
         offset: [0.25, -0.5],
-        ..UserTexture::of(place.path("t.png"))
-    };
-    let green = UserTexture {
-        channel: TextureChannel::Green,
-        ..UserTexture::of(place.path("t.png"))
+        ..of()
     };
     let textures = [
-        (TextureTarget::BaseColor, placed.clone()),
-        (TextureTarget::Roughness, green),
-        (TextureTarget::Normal, placed),
+        (
+            TextureTarget::BaseColor,
+            UserTexture {
+                rotation_deg: 30.0,
+                ..placed.clone()
+            },
+        ),
+        (
+            TextureTarget::Roughness,
+            UserTexture {
+                channel: TextureChannel::Green,
+                strength: 0.75,
+                inverted: true,
+                ..of()
+            },
+        ),
+        (
+            TextureTarget::Opacity,
+            UserTexture {
+                channel: TextureChannel::Red,
+                strength: 0.5,
+                ..of()
+            },
+        ),
+        (
+            TextureTarget::Normal,
+            UserTexture {
+                inverted: true,
+                ..placed
+            },
+        ),
     ];
-    for (target, texture) in &textures {
-        material.user_textures.set(*target, Some(texture.clone()));
-        material.textures[*target] = true;
+    for (target, texture) in textures {
+        material.user_textures.set(target, Some(texture));
+        material.textures[target] = true;
     }
     save_material(&place.path("a.json"), &material).unwrap();
-    for format in ["materialx", "standard-surface"] {
-        let run = place.done(&format!("convert a.json out/a.mtlx --to {format} --report -"));
+    material
+}
+
+/// The numbers that say where a texture lies and what is done to its values.
+fn mapping(texture: &UserTexture) -> [f32; 7] {
+    let UserTexture {
+        scale,
+        stretch,
+        rotation_deg,
+        offset: [right, up],
+        strength,
+        inverted,
+        ..
+    } = *texture;
+    [scale, stretch, rotation_deg, right, up, strength, f32::from(inverted)]
+}
+
+/// Textures of a material go beside the document and come back from there, with the exact parameters and without.
+#[test]
+fn textures_of_a_material_travel_and_come_back() {
+    let place = Workplace::new();
+    let material = textured(&place);
+    for (format, name) in [
+        ("materialx", "a.mtlx"),
+        ("standard-surface", "a.mtlx"),
+        ("usd", "a.usda"),
+    ] {
+        let run = place.done(&format!("convert a.json out/{name} --to {format} --report -"));
         assert!(run.stdout.contains("texture of Base colour"), "{}", run.stdout);
+        assert!(!run.stdout.contains("dropped"), "{}", run.stdout);
         for is_plain in [false, true] {
             let options = ReadOptions {
                 lobe: ImportLobe::Ggx,
                 is_plain,
                 ..ReadOptions::default()
             };
-            let subject = read(&place.path("out/a.mtlx"), options).unwrap();
+            let subject = read(&place.path("out").join(name), options).unwrap();
             let (back, losses) = (&subject.materials[0], &subject.losses[0]);
-            assert!(losses.is_empty(), "{format}: {losses:?}");
-            assert_eq!(
-                (back.base_color, back.roughness, back.normal_strength),
-                ([0.5, 0.25, 1.0], 0.5, 0.5)
-            );
-            for (target, texture) in &textures {
-                let found = back.user_textures.get(*target).expect("is there");
+            let is_said = |entry: &&Entry| !entry.detail.contains("is read");
+            assert_eq!(losses.iter().find(is_said), None, "{format}");
+            let numbers = |m: &MaterialSettings| {
+                let [r, g, b] = m.base_color;
+                [
+                    r,
+                    g,
+                    b,
+                    m.roughness,
+                    m.normal_strength,
+                    m.opacity,
+                    m.transmission_weight,
+                ]
+            };
+            assert_eq!(numbers(back), numbers(&material), "{format}");
+            for (target, texture) in material.user_textures.iter() {
+                let found = back.user_textures.get(target).expect("is there");
                 assert_eq!(found.file, place.path("out/a_t.png"));
+                let apart = std::iter::zip(mapping(found), mapping(texture)).map(|(a, b)| (a - b).abs());
+                assert!(apart.fold(0.0, f32::max) < 1e-5, "{format}: {found:?} and {texture:?}");
                 assert_eq!(
-                    (found.scale, found.stretch, found.offset),
-                    (texture.scale, texture.stretch, texture.offset)
-                );
-                assert_eq!(
-                    (found.channel, found.is_srgb(*target)),
+                    (found.channel, found.is_srgb(target)),
                     (texture.channel, target.is_color())
                 );
             }
         }
+    }
+}
+
+#[test]
+fn a_texture_that_was_placed_elsewhere_lies_as_it_was_placed() {
+    let place = Workplace::new();
+    textured(&place);
+    for (name, from, to) in [
+        ("a.usda", "inputs:scale = (2, 3)", "inputs:scale = (4, 3)"),
+        (
+            "a.mtlx",
+            "name=\"scale\" type=\"vector2\" value=\"0.5, ",
+            "name=\"scale\" type=\"vector2\" value=\"0.25, ",
+        ),
+    ] {
+        place.done(&format!("convert a.json {name}"));
+        let text = place.read(name);
+        assert!(text.contains(from), "{text}");
+        place.write(name, text.replace(from, to).as_bytes());
+        let subject = read(&place.path(name), ReadOptions::default()).unwrap();
+        let told = format!("{:?}", subject.losses[0]);
+        assert!(told.contains("changed since"), "{name}: {told}");
+        let found = subject.materials[0].user_textures.get(TextureTarget::Normal).unwrap();
+        assert!((found.scale - 4.0).abs() < 1e-5, "{name}: {found:?}");
+    }
+}
+
+/// Materials of USD lie on a model as they lay on a ball: a stretched texture that is turned has two transforms.
+#[test]
+fn textures_of_an_exported_material_lie_on_a_model_of_usd() {
+    let place = Workplace::new();
+    let material = textured(&place);
+    place.done("convert a.json out/a.usda");
+    let text = place.read("out/a.usda");
+    let name = text
+        .split("def Material \"")
+        .nth(1)
+        .and_then(|rest| rest.split('"').next())
+        .unwrap();
+    let quad = format!(
+        "def Mesh \"Quad\" (\n prepend apiSchemas = [\"MaterialBindingAPI\"]\n)\n{{\n int[] faceVertexCounts = [4]\n \
+         int[] faceVertexIndices = [0, 1, 2, 3]\n point3f[] points = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]\n \
+         texCoord2f[] primvars:st = [(0, 0), (1, 0), (1, 1), (0, 1)] (\n interpolation = \"faceVarying\"\n )\n \
+         rel material:binding = </Materials/{name}>\n}}\n"
+    );
+    place.write("out/a.usd", (text.clone() + &quad).as_bytes());
+    let model = load(&ModelSource::File(place.path("out/a.usd"))).unwrap();
+    for target in [
+        TextureTarget::BaseColor,
+        TextureTarget::Roughness,
+        TextureTarget::Normal,
+    ] {
+        let found = model.slots[0].texture(target).expect("is there").texture_from_mesh_uv;
+        let wanted = material.user_textures.get(target).unwrap().picture_from_uv();
+        let apart = std::iter::zip(found, wanted).map(|(a, b)| (a - b).abs());
+        assert!(apart.fold(0.0, f32::max) < 1e-5, "{target:?}: {found:?} and {wanted:?}");
+    }
+}
+
+/// Scenes and scripts name the files beside them, with what their programs do to the numbers.
+#[test]
+fn textures_of_a_material_travel_to_what_is_only_written() {
+    let place = Workplace::new();
+    textured(&place);
+    let told = place.done("convert a.json out/a.xml --report -").stdout;
+    assert!(
+        told.contains("texture of Roughness") && !told.contains("the surface has no input"),
+        "{told}"
+    );
+    let text = place.read("out/a.xml");
+    let scene = roxmltree::Document::parse(&text).unwrap();
+    let maps = scene.descendants().filter(|node| node.has_tag_name("texture"));
+    let mut files = Vec::new();
+    for map in maps {
+        let value = |of: &str| {
+            let named = |node: &roxmltree::Node<'_, '_>| node.attribute("name") == Some(of);
+            map.descendants().find(named).and_then(|node| node.attribute("value"))
+        };
+        let is_raw = value("raw") == Some("true");
+        assert_eq!(is_raw, map.attribute("name") != Some("base_color"));
+        let file = value("filename").unwrap();
+        assert!(place.path("out").join(file).is_file(), "{file}");
+        files.push(file.to_owned());
+    }
+    files.sort();
+    assert_eq!(
+        files,
+        [
+            "a_base_color.pfm",
+            "a_normalmap.pfm",
+            "a_opacity.pfm",
+            "a_roughness.pfm"
+        ]
+    );
+    // 0.5 (1 − 0.75 g) in the last row, which comes first.
+    let bytes = std::fs::read(place.path("out/a_roughness.pfm")).unwrap();
+    let rest = bytes.strip_prefix(b"Pf\n4 4\n-1.0\n").expect("a header");
+    let first = f32::from_le_bytes(*rest.first_chunk().unwrap());
+    assert!((first - 0.5 * (1.0 - 0.75 * 180.0 / 255.0)).abs() < 1e-6, "{first}");
+    let script = written(
+        &place,
+        &load_material(&place.path("a.json")).unwrap().value,
+        "blender",
+        "py",
+    );
+    assert!(place.path("a_t.png").is_file());
+    for words in [
+        "\"Base Color\": (\"a_t.png\", \"sRGB\", \"Color\", ",
+        ", 30.0, (0.5, 0.33333334), (0.5, 0.25, 1.0), (0.0, 0.0, 0.0))",
+        "\"Roughness\": (\"a_t.png\", \"Non-Color\", \"Green\", (0.0, 0.0), 0.0, (1.0, 1.0), (-0.375, -0.375, -0.375), (0.5, 0.5, 0.5))",
+        "(0.5, -0.5, 1.0), (0.25, 0.75, 0.0))",
+    ] {
+        assert!(script.contains(words), "{words}: {script}");
+    }
+}
+
+/// What the report says a file shows is what is drawn of the file, read without the exact parameters.
+#[test]
+fn a_file_opened_again_gives_the_picture_that_was_told() {
+    let place = Workplace::new();
+    let mut material = textured(&place);
+    // glTF has opacity in the colour's texture alone, and Schlick's approximation.
+    material.user_textures.set(TextureTarget::Opacity, None);
+    material.textures[TextureTarget::Opacity] = false;
+    material.fresnel = Fresnel::Schlick;
+    for (format, name) in [("materialx", "out/a.mtlx"), ("usd", "out/a.usda")] {
+        let format = by_name(format).unwrap();
+        let prepared = prepare(&Subject::of(material.clone()), "a", &place.path(name), format).unwrap();
+        prepared.save().unwrap();
+        let [_, mut shown] = prepared.report.materials[0].looks.as_deref().unwrap().clone();
+        if name.ends_with("usda") {
+            // Of the two surfaces that one is read which has Schlick's approximation.
+            shown.fresnel = Fresnel::Schlick;
+        }
+        save_material(&place.path("shown.json"), &shown).unwrap();
+        place.done(&format!("convert {name} found.json --without-exact --import-lobe ggx"));
+        let picture = |of: &str| place.picture(&format!("--model sphere --size 48x48 --samples 16 --material {of}"));
+        let apart = picture("shown.json").difference(&picture("found.json"));
+        assert!(apart < 0.01, "{name}: {apart}");
+    }
+    // glTF stretches before it turns.
+    save_material(&place.path("a.json"), &material).unwrap();
+    let told = place.done("convert a.json a.glb").stderr;
+    assert!(told.contains("stretches a texture before it turns it"), "{told}");
+    material
+        .user_textures
+        .get_mut(TextureTarget::BaseColor)
+        .unwrap()
+        .stretch = 1.0;
+    let scenes = Folder::new();
+    let painted = shining_by_vertices(&scenes);
+    let ball = Document {
+        model: ModelSource::Sphere,
+        materials: vec![material],
+        ..Document::default()
+    };
+    for (what, document) in [("textures", ball), ("vertex colours", painted)] {
+        save_document(&place.path("scene.json"), &document).unwrap();
+        place.done("convert scene.json scene.glb");
+        let picture = |of: &str| place.picture(&format!("--size 48x48 --samples 16 {of}"));
+        let apart = picture("scene.json").difference(&picture("--model scene.glb --import-lobe ggx"));
+        assert!(apart < 0.02, "{what}: {apart}");
     }
 }

@@ -198,7 +198,7 @@ fn materials_with_images_are_folders() {
         library::list(folder)
             .expect("listed")
             .iter()
-            .map(library::Entry::name)
+            .map(library::LibraryMaterial::name)
             .collect::<Vec<_>>()
     };
     assert_eq!(names(&folder), ["Floor copy"]);

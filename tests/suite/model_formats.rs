@@ -7,6 +7,7 @@ use glossmith::{
     document::{ImportLobe, of_model::materials_of},
     import::load,
     scene::{Fate, Geometry, Model, ModelSource, Wrap, texture::TextureTarget},
+    store::exchange::{self, ReadOptions},
 };
 use std::io::Write;
 
@@ -382,6 +383,17 @@ fn fbx_files_come_in_metres_with_y_up() {
     let numbers = ["specular.roughness", "geometry.opacity", "base.metalness"].map(|key| red.number(key));
     assert_eq!((red.color("base.color"), numbers), ([0.5, 0.25, 0.0], [0.5, 0.75, 0.0]));
     says(&model, Fate::Approximated, "Phong");
+    // Visibility was a percentage, which the crate takes for 0.
+    let old = "; FBX 5.0.0 project file\nModel: \"Model::Plate\" {\n Vertices: 0,0,0,100,0,0,100,100,0\n PolygonVertexIndex: 0,1,-3\n MaterialAssignation: \"AllSame\"\n \
+               Channel: \"Visibility\" {\n Default: SHARE\n }\n}\n";
+    for (share, is_shown) in [("100", true), ("0", false)] {
+        let model = folder.load("old.fbx", old.replace("SHARE", share).as_bytes());
+        assert_eq!(
+            model.is_ok_and(|model| model.mesh.triangles.len() == 1),
+            is_shown,
+            "{share}"
+        );
+    }
     for (contents, words) in [
         (&FBX[..FBX.len() / 2], "plate.fbx"),
         ("no FBX", "plate.fbx"),
@@ -717,6 +729,102 @@ fn usd_files_come_with_instances_lights_and_cameras() {
         .expect_err("too deep")
         .to_string();
     assert!(error.contains("nested"), "{error}");
+}
+
+/// Shapes by half their extents and volume; other types of prims are named.
+#[test]
+fn usd_shapes_become_meshes() {
+    use std::f64::consts::PI;
+    let folder = Folder::new();
+    for (shape, half, volume) in [
+        (
+            "Sphere \"S\" {\n double radius = 2\n}",
+            [2.0, 2.0, 2.0],
+            32.0 * PI / 3.0,
+        ),
+        ("Cube \"S\" {\n double size = 3\n}", [1.5, 1.5, 1.5], 27.0),
+        (
+            "Cylinder \"S\" {\n uniform token axis = \"X\"\n double height = 6\n}",
+            [3.0, 1.0, 1.0],
+            6.0 * PI,
+        ),
+        ("Cone \"S\" {\n double height = 4\n}", [1.0, 1.0, 2.0], 4.0 * PI / 3.0),
+    ] {
+        let text = format!("#usda 1.0\n(metersPerUnit = 1)\ndef {shape}\ndef BasisCurves \"Hair\" {{\n}}\n");
+        let model = folder.load("shape.usd", text.as_bytes()).expect(shape);
+        let high = model.mesh.positions.iter().copied().reduce(DVec3::max).unwrap();
+        assert!(high.abs_diff_eq(DVec3::from_array(half), 1e-9), "{shape}: {high}");
+        let found = model.mesh.signed_volume();
+        assert!(
+            (found - volume).abs() <= 0.01 * volume,
+            "{shape}: {found} in place of {volume}"
+        );
+        says(&model, Fate::Ignored, "BasisCurves");
+    }
+}
+
+/// The colours of a prim without a material, and of one whose material asks for them.
+#[test]
+fn usd_colours_of_prims_are_those_of_vertices() {
+    let folder = Folder::new();
+    let look = "def Material \"M\"\n{\n token outputs:surface.connect = </M/S.outputs:surface>\n def Shader \"S\"\n {\n uniform token info:id = \
+                \"UsdPreviewSurface\"\n color3f inputs:diffuseColor.connect = </M/R.outputs:result>\n token outputs:surface\n }\n def Shader \
+                \"R\"\n {\n uniform token info:id = \"UsdPrimvarReader_float3\"\n string inputs:varname = \"displayColor\"\n float3 \
+                outputs:result\n }\n}\n";
+    for binding in ["", "rel material:binding = </M>"] {
+        let text = format!(
+            "#usda 1.0\n{look}def Cube \"C\"\n{{\n color3f[] primvars:displayColor = [(0.5, 0.25, 0)]\n {binding}\n}}\n"
+        );
+        let model = folder.load("cube.usd", text.as_bytes()).expect("loads");
+        assert_eq!(model.slots[0].color("base.color"), [1.0; 3], "{binding}");
+        assert!(model.slots[0].has_vertex_colors, "{binding}");
+        assert!(model.mesh.colors.iter().all(|color| *color == [0.5, 0.25, 0.0, 1.0]) && !model.mesh.colors.is_empty());
+    }
+}
+
+/// A material of a MaterialX layer through a graph's interface and an image, for a model and as a material.
+#[test]
+fn usd_refers_to_layers_of_materialx() {
+    let folder = Folder::new();
+    let picture = image::RgbImage::from_pixel(2, 2, image::Rgb([255, 0, 0]));
+    picture.save(folder.path("red.png")).unwrap();
+    let layer = r#"<materialx version="1.38" colorspace="lin_rec709">
+      <nodegraph name="g">
+        <input name="rough" type="float" value="0.25"/>
+        <image name="i" type="color3"><input name="file" type="filename" value="red.png" colorspace="srgb_texture"/></image>
+        <output name="color" type="color3" nodename="i"/>
+        <output name="roughness" type="float" interfacename="rough"/>
+      </nodegraph>
+      <standard_surface name="s" type="surfaceshader">
+        <input name="base_color" type="color3" nodegraph="g" output="color"/>
+        <input name="specular_roughness" type="float" nodegraph="g" output="roughness"/>
+        <input name="metalness" type="float" value="0.5"/>
+        <input name="specular_IOR" type="float" value="1.75"/>
+      </standard_surface>
+      <surfacematerial name="look" type="material">
+        <input name="surfaceshader" type="surfaceshader" nodename="s"/>
+      </surfacematerial>
+    </materialx>"#;
+    std::fs::write(folder.path("look.mtlx"), layer).unwrap();
+    let text = "#usda 1.0\ndef Sphere \"Ball\" (\n prepend apiSchemas = [\"MaterialBindingAPI\"]\n)\n{\n rel material:binding = </M>\n}\n\
+                def Material \"M\" (\n prepend references = @./look.mtlx@</MaterialX/Materials/look>\n)\n{\n}\n";
+    let model = folder.load("ball.usda", text.as_bytes()).unwrap();
+    let [slot] = &model.slots[..] else {
+        panic!("{:?}", model.slots)
+    };
+    let numbers = ["base.metalness", "specular.roughness", "specular.ior"].map(|key| slot.number(key));
+    assert_eq!(
+        (numbers, model.textures.len()),
+        ([0.5, 0.25, 1.75], 1),
+        "{:?}",
+        model.report
+    );
+    says(&model, Fate::Approximated, "ND_standard_surface_surfaceshader");
+    let subject = exchange::read(&folder.path("ball.usda"), ReadOptions::default()).unwrap();
+    let material = &subject.materials[0];
+    // An image of one colour is that colour.
+    let color = (material.base_color, material.metalness, material.ior);
+    assert_eq!(color, ([1.0, 0.0, 0.0], 0.5, 1.75));
 }
 
 #[test]

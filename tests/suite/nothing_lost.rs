@@ -7,6 +7,7 @@ use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use glossmith::{
     app::{App, Options, actions::Action, actions::Command},
     document::Document,
+    scene::ModelSource,
     store::{PRESETS, examples::still_life, load_document, save_document},
 };
 
@@ -107,6 +108,35 @@ fn what_a_crash_left_is_offered_and_restored() {
         0,
         "closed as it should be, it leaves nothing"
     );
+}
+
+/// Models are read in C, whose faults end the program: what was edited last is in the file by then.
+#[test]
+fn edits_are_put_aside_before_a_model_is_read() {
+    for (roughness, action) in [
+        (
+            0.31,
+            Action::UseModel(ModelSource::File(
+                Path::new(crate::ROOT).join("fuzz/corpus/obj/plate.obj"),
+            )),
+        ),
+        (0.32, Action::Do(Command::Reload)),
+    ] {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let mut harness = editor_of(Options {
+            data: Some(folder.path().to_owned()),
+            autosave_interval: Some(Duration::from_secs(3600)),
+            ..options()
+        });
+        wait(&mut harness, "the start", App::is_settled);
+        // The first edit is put aside at once, the second one an hour later.
+        edit_until_kept(&mut harness, folder.path(), 0.9);
+        edit(&mut harness, roughness);
+        request(&mut harness, action);
+        wait(&mut harness, "the model", |app| !app.is_opening());
+        let left: Vec<f32> = kept(folder.path()).iter().map(|d| d.materials[0].roughness).collect();
+        assert_eq!(left, [roughness]);
+    }
 }
 
 #[test]

@@ -276,6 +276,8 @@ fn what_a_picture_says_of_its_texels_is_heeded() {
     let all = [RED, GREEN, BLUE, WHITE];
     let with_opacity = |opacity: u8| all.map(|[r, g, b, _]| [r, g, b, opacity]);
     let fifth = all.map(|texel| texel.map(|code| code / 5));
+    // 0.5, by a shared exponent of 128.
+    let half = all.map(|[r, g, b, _]| [r.div_ceil(2), g.div_ceil(2), b.div_ceil(2), 128]);
     for (name, bytes, expected) in [
         ("no bits of opacity.tga", tga(0, with_opacity(0)), all),
         ("bits of opacity.tga", tga(8, with_opacity(0)), with_opacity(0)),
@@ -283,6 +285,15 @@ fn what_a_picture_says_of_its_texels_is_heeded() {
         ("not multiplied.tif", tiff(2, fifth), fifth),
         ("multiplied.exr", exr(&place), with_opacity(51)),
         ("photo.png", photo(all), [BLUE, RED, WHITE, GREEN]),
+        (
+            "exposed.hdr",
+            [
+                &b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\nEXPOSURE=2\nEXPOSURE=.5\nCOLORCORR=.5 .5 .5\n\n-Y 2 +X 2\n"[..],
+                &half.concat(),
+            ]
+            .concat(),
+            all,
+        ),
         ("runs.bmp", bmp(), all),
         (
             "up.ktx2",

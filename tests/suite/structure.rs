@@ -54,3 +54,17 @@ fn modules_use_only_those_declared_before_them() {
         }
     }
 }
+
+/// An operation on lanes in a function that was not compiled for their instructions is a call of this name, and ten times slower.
+#[test]
+fn nothing_falls_out_of_lanes() {
+    let program = fs::read(crate::program()).unwrap();
+    let program = String::from_utf8_lossy(&program);
+    // As symbols of both manglings begin with the name's length, and the book in the program does not.
+    let has_calls =
+        ["22__fearless_simd_kernel", "22___fearless_simd_kernel"].map(|name| program.contains(name)) != [false; 2];
+    assert!(
+        !has_calls || cfg!(debug_assertions),
+        "objdump -dC names what calls them"
+    );
+}

@@ -8,6 +8,7 @@ use glossmith::{
     document::{AreaLight, Document, GroundKind, range},
     optics::{curve::Curve, curve::curve_density, lobe::Lobe},
     scene::{ModelSource, environment::EnvironmentSource, texture::TextureTarget},
+    store::examples::still_life,
 };
 use serde_json::json;
 
@@ -206,6 +207,66 @@ fn the_palette_leads_to_parameters_and_panels() {
     harness.key_press(Key::Enter);
     harness.run_steps(3);
     assert!(harness.has("Samples view angle"), "the panel is in front");
+}
+
+/// In narrow columns rows wrap: no control reaches beyond its column, where it would be cut.
+#[test]
+fn no_control_is_cut_in_a_small_window() {
+    let mut document = still_life();
+    // Gold, whose indices are three numbers each.
+    document.materials[0] = document.materials[2].clone();
+    let mut harness = editor_with(document, Vec::new());
+    harness.command(Command::Pause);
+    harness.set_size(egui::vec2(800.0, 600.0));
+    let mut cut = Vec::new();
+    for pane in Pane::ALL {
+        harness.reveal(pane);
+        harness.run_steps(2);
+        let image = harness.get_by_label("Viewport").rect();
+        for node in harness.root().children_recursive() {
+            let data = node.accesskit_node();
+            // The borders between columns have no label.
+            if data.bounding_box().is_none() || data.label().is_none() {
+                continue;
+            }
+            let rect = node.rect();
+            // The menus and the status bar go over all columns.
+            let is_bar = rect.bottom() < image.top() - 20.0 || (image.bottom()..600.0).contains(&rect.center().y);
+            let is_control = data.data().supports_action(egui::accesskit::Action::Click);
+            if !is_control || is_bar || image.contains_rect(rect) {
+                continue;
+            }
+            let end = if rect.left() < image.left() {
+                image.left()
+            } else {
+                800.0
+            };
+            if rect.right() > end + 0.5 {
+                cut.push(format!("{pane:?}: {:?} at {rect:?}, beyond {end}", data.label()));
+            }
+        }
+    }
+    assert!(cut.is_empty(), "{cut:#?}");
+}
+
+/// A plot that is begun in view ends in view.
+#[test]
+fn the_curve_fits_a_low_panel() {
+    let mut harness = editor_with(small_document(), Vec::new());
+    harness.command(Command::Pause);
+    harness.reveal(Pane::Curve);
+    for height in [600.0, 720.0, 768.0, 1080.0] {
+        harness.set_size(egui::vec2(1280.0, height));
+        harness.run_steps(3);
+        let bottom = harness.get_by_label("Viewport").rect().bottom();
+        for plot in ["The curve D over ξ", "The density of the distance D"] {
+            let rect = harness.get_by_label(plot).rect();
+            assert!(
+                rect.bottom() <= bottom || rect.top() >= bottom - 16.0,
+                "{plot} at {rect:?} of {bottom}"
+            );
+        }
+    }
 }
 
 /// Brings the curve's panel to the front and makes the curve a custom one, by the button or by the menu.

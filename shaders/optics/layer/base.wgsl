@@ -1,13 +1,15 @@
 // The diffuse base. Twin of src/optics/layer/base.rs.
 #import "optics/layer/registry"
 #import "optics/rough_diffuse"
+#import "optics/scattering"
 
 fn base_shape() -> LobeShape {
     return LobeShape(LOBE_LAMBERT, CURVE_SQRT, HORIZON_MIRROR, 0u, 1.0, 0.0, 0.0);
 }
 
-fn base_albedo(material: Material, surface: Surface, left: vec3f) -> vec3f {
-    return material.base_color * (left * (1.0 - material.metalness)) * (1.0 - material.transmission_weight);
+fn base_albedo(material: Material, left: vec3f, again: vec3f) -> vec3f {
+    return (1.0 - material.metalness)
+        * mix(material.base_color * left * f32(PLAN_BASE), again, material.transmission_weight);
 }
 
 fn base_toward(material: Material, layers: Layers, surface: Surface, wi: vec3f) -> LayerToward {
@@ -50,9 +52,9 @@ fn base_refined(material: Material, surface: Surface, wi: vec3f, evaluated: vec2
     return vec2f(select(0.0, narrow_density(leaning, spread) + narrow_density(folded, spread), above > 0.0));
 }
 
-// The sine of the widest angle to which the base scatters: 1 but from within.
+// The sine of the widest angle to which the base scatters: 1 but from within, behind the interface.
 fn base_spread(material: Material, surface: Surface) -> f32 {
-    return select(1.0, material_ior_ahead(material, true), is_within(material, surface));
+    return select(1.0, material_ior_ahead(material, true), is_within(material, surface) && material_has_base(material));
 }
 
 // The density of Lambert's lobe with its sines multiplied by spread.

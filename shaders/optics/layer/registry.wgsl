@@ -38,13 +38,15 @@ fn layer_lobe(layer: u32, material: Material, layers: Layers, surface: Surface) 
     if PLAN_SPECULAR && is_layer(layer, LAYER_SPECULAR) {
         return LayerLobe(material_has_specular(material), material_shape(material), surface.frame, layers.specular);
     }
-    if PLAN_TRANSMISSION && (layer == LAYER_TRANSMISSION || !PLAN_BASE) {
+    if PLAN_TRANSMISSION && (layer == LAYER_TRANSMISSION || !plans_base()) {
         return LayerLobe(
             material_transmits(material), material_transmission_shape(material, surface.is_inside), surface.frame,
             layers.transmission,
         );
     }
-    return LayerLobe(material_has_base(material), base_shape(), surface.frame, layers.base);
+    return LayerLobe(
+        material_has_base(material) || scatters_within(material, surface), base_shape(), surface.frame, layers.base,
+    );
 }
 
 fn layer_toward(
@@ -52,8 +54,8 @@ fn layer_toward(
 ) -> LayerToward {
     if PLAN_FUZZ && is_layer(layer, LAYER_FUZZ) { return LayerToward(layers.fuzz.albedo, layers.fuzz.probability); }
     if PLAN_COAT && is_layer(layer, LAYER_COAT) { return LayerToward(WHITE, layers.coat.probability); }
-    if PLAN_SPECULAR && is_layer(layer, LAYER_SPECULAR) { return specular_toward(material, layers, surface, shape, wi); }
-    if PLAN_BASE && is_layer(layer, LAYER_BASE) { return base_toward(material, layers, surface, wi); }
+    if PLAN_SPECULAR && is_layer(layer, LAYER_SPECULAR) { return specular_toward(material, layers, surface, wi); }
+    if plans_base() && is_layer(layer, LAYER_BASE) { return base_toward(material, layers, surface, wi); }
     if PLAN_TRANSMISSION && is_layer(layer, LAYER_TRANSMISSION) {
         return transmission_toward(material, layers, surface, shape, wi);
     }
@@ -63,7 +65,7 @@ fn layer_toward(
 fn layer_refined_sample(layer: u32, material: Material, surface: Surface, xi: vec3f, drawn: LobeSample) -> LobeSample {
     if PLAN_FUZZ && layer == LAYER_FUZZ { return fuzz_refined_sample(material, surface, xi); }
     if PLAN_COAT && layer == LAYER_COAT { return coat_refined_sample(material, surface, drawn); }
-    if PLAN_BASE && layer == LAYER_BASE { return base_refined_sample(material, surface, xi, drawn); }
+    if plans_base() && layer == LAYER_BASE { return base_refined_sample(material, surface, xi, drawn); }
     return drawn;
 }
 
@@ -73,7 +75,7 @@ fn layer_refined(layer: u32, material: Material, surface: Surface, lobe: LayerLo
     if PLAN_COAT && layer == LAYER_COAT {
         return vec2f(evaluated.x * coat_fresnel(material, surface.wo, wi), evaluated.y);
     }
-    if PLAN_BASE && layer == LAYER_BASE { return base_refined(material, surface, wi, evaluated); }
+    if plans_base() && layer == LAYER_BASE { return base_refined(material, surface, wi, evaluated); }
     return evaluated;
 }
 
@@ -124,8 +126,10 @@ fn material_layers(material: Material, surface: Surface) -> Layers {
         layers.specular.albedo = albedo.reflected;
         left = albedo.transmittance;
     }
-    if material_has_base(material) {
-        layers.base.albedo = base_albedo(material, surface, left);
+    if material_has_base(material) || scatters_within(material, surface) {
+        let again = scattered_within(material, surface);
+        layers.base.albedo = base_albedo(material, left, again);
+        left = max(left - again, vec3f());
     }
     if material_transmits(material) {
         layers.transmission.albedo = transmission_albedo(material, left);
@@ -149,7 +153,7 @@ fn material_albedo(material: Material, surface: Surface, layers: Layers) -> vec3
     if PLAN_FUZZ { covers += layers.fuzz.transmittance * layers.fuzz.albedo; }
     if PLAN_COAT { covers += layers.coat.transmittance * layers.coat.albedo; }
     if PLAN_SPECULAR { below += layers.specular.transmittance * specular_seen_albedo(material, surface, layers.specular); }
-    if PLAN_BASE { below += layers.base.transmittance * layers.base.albedo; }
+    if plans_base() { below += layers.base.transmittance * layers.base.albedo; }
     if PLAN_TRANSMISSION { below += layers.transmission.transmittance * layers.transmission.albedo; }
     if PLAN_COAT_ABSORPTION { below *= coat_tint(material, layers, surface, surface.wo); }
     return covers + below;

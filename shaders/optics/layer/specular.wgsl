@@ -10,12 +10,12 @@ fn specular_albedo(material: Material, surface: Surface) -> LayerAlbedo {
     return LayerAlbedo(albedos[0], max(1.0 - albedos[1], vec3f()));
 }
 
-fn specular_toward(material: Material, layers: Layers, surface: Surface, shape: LobeShape, wi: vec3f) -> LayerToward {
+fn specular_toward(material: Material, layers: Layers, surface: Surface, wi: vec3f) -> LayerToward {
     let terms = material_fresnel_terms(material, surface.is_inside);
     let cosine = half_vector_cosine(surface.wo, wi);
     let once = fresnel(terms, cosine);
     return LayerToward(
-        scattered_again(material, surface, shape, terms, cosine, once),
+        scattered_again(material, surface, terms, cosine, once),
         specular_probability(material, layers, surface, wi, once),
     );
 }

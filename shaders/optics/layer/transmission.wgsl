@@ -22,7 +22,7 @@ fn transmission_toward(
         toward.probability = (1.0 - layers.base.probability) * (1.0 - mirrored_share(reflected, luminance(left)));
     }
     if bends(material) {
-        toward.color = left * interface_gain(material, surface, shape, false);
+        toward.color = left / interface_kept(material, surface, 1u + u32(is_within(material, surface)));
     }
     return toward;
 }

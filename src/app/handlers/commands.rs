@@ -231,7 +231,7 @@ impl App {
                 self.worker.pause(self.shared.rendering.is_paused);
             }
             Command::Reload => {
-                self.worker.reload();
+                self.reload();
                 self.restart_rival();
             }
             Command::Restart => {

@@ -14,7 +14,7 @@ use crate::{
         path_text::file_name,
         texture::{TextureTarget, UserTexture, set},
     },
-    services::{disk, disk::Disk, edits::Edits, messages::Entry, watched::Watched},
+    services::{disk, disk::Disk, edits::Edits, messages::LogEntry, watched::Watched},
     sheets::{dialogs::Purpose, question, unsaved::Then},
     store::{
         FileError, Loaded,
@@ -164,12 +164,12 @@ impl App {
     }
 
     /// Writes something after what was written before, and says what came of it.
-    pub fn write(&mut self, work: impl FnOnce() -> Result<Entry, String> + Send + 'static) {
+    pub fn write(&mut self, work: impl FnOnce() -> Result<LogEntry, String> + Send + 'static) {
         self.files.disk.order(disk::Task::Write, || written(work()));
     }
 
     /// The same for what takes long.
-    pub fn write_beside(&mut self, work: impl FnOnce() -> Result<Entry, String> + Send + 'static) {
+    pub fn write_beside(&mut self, work: impl FnOnce() -> Result<LogEntry, String> + Send + 'static) {
         self.files.disk.beside(disk::Task::Write, || written(work()));
     }
 
@@ -364,7 +364,7 @@ impl App {
                     app.shared.recent.add(&path);
                     app.files.project = Some(path.clone());
                 }
-                app.report_outcome(saved.map(|()| Entry::done_with("Saved", &path, "")))
+                app.report_outcome(saved.map(|()| LogEntry::done_with("Saved", &path, "")))
             })
         });
     }
@@ -373,12 +373,12 @@ impl App {
         let material = self.desk_material();
         self.write(move || {
             save_material(&path, &material).map_err(crate::in_words)?;
-            Ok(Entry::done_with("Saved", &path, ""))
+            Ok(LogEntry::done_with("Saved", &path, ""))
         });
     }
 
     /// Reports what was to be done, in a note; whether it was done.
-    pub fn report_outcome(&mut self, outcome: Result<Entry, String>) -> bool {
+    pub fn report_outcome(&mut self, outcome: Result<LogEntry, String>) -> bool {
         let done = self.taken(outcome);
         let is_done = done.is_some();
         self.say_all(done);
@@ -386,7 +386,7 @@ impl App {
     }
 }
 
-fn written(outcome: Result<Entry, String>) -> Finish {
+fn written(outcome: Result<LogEntry, String>) -> Finish {
     finish(move |app, _| app.report_outcome(outcome))
 }
 
@@ -480,7 +480,7 @@ impl App {
             Some(path) => {
                 self.open(path);
             }
-            None => self.worker.reload(),
+            None => self.reload(),
         }
     }
 }

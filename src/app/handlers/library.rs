@@ -11,7 +11,7 @@ use crate::{
     layout::Pane,
     render::display::display,
     render::worker::{Activity, Picture},
-    services::{disk::Task, library::Change, messages::Entry, pictures::uploaded},
+    services::{disk::Task, library::Change, messages::LogEntry, pictures::uploaded},
     store::{FileError, library, library::Removed, snapshots},
 };
 
@@ -19,7 +19,7 @@ use crate::{
 const PINNED_FROM: u32 = 8;
 
 /// What was done, and what was removed.
-type Done = (Option<Entry>, Option<Removed>);
+type Done = (Option<LogEntry>, Option<Removed>);
 
 fn task(change: &Change) -> Task {
     if *change == Change::List {
@@ -35,7 +35,7 @@ fn carry_out(
     before: Option<Removed>,
     rename: fn(&Path, &str) -> Result<PathBuf, FileError>,
 ) -> Result<Done, FileError> {
-    let done = |verb, path: &Path| Some(Entry::done_with(verb, path, ""));
+    let done = |verb, path: &Path| Some(LogEntry::done_with(verb, path, ""));
     Ok(match (change, before) {
         (Change::Rename(path, name), _) => (done("Renamed to", &rename(path, name)?), None),
         (Change::Remove(path), _) => (done("Removed", path), Some(library::remove(path)?)),
@@ -55,7 +55,7 @@ impl App {
         };
         let (material, before) = (self.desk_material(), self.shared.library.removed.take());
         self.files.disk.order(task(&change), move || {
-            let saved = |path: PathBuf| (Some(Entry::done_with("Saved", &path, "one of your presets")), None);
+            let saved = |path: PathBuf| (Some(LogEntry::done_with("Saved", &path, "one of your presets")), None);
             let done = match &change {
                 Change::Add => library::add(&folder, &material).map(saved),
                 Change::Duplicate(path) => library::duplicate(path).map(saved),
@@ -106,7 +106,7 @@ impl App {
                     match &change {
                         Change::Retake(path) => snapshots::save(path, &document, &pixels).map(|()| (None, before)),
                         _ => snapshots::add(&folder, &document, &pixels)
-                            .map(|path| (Some(Entry::done_with("Pinned", &path, "")), None)),
+                            .map(|path| (Some(LogEntry::done_with("Pinned", &path, "")), None)),
                     }
                 }
                 (change, _) => carry_out(change, before, snapshots::rename),

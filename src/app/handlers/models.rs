@@ -47,12 +47,23 @@ impl App {
         self.open_model(ModelSource::File(first), options);
     }
 
-    /// Opens a model. What is not saved is put aside before: a reader that crashes costs nothing.
     pub fn open_model(&mut self, source: ModelSource, options: ModelOptions) {
-        if !self.edits.is_saved(&self.document) {
-            self.autosave.keep(&self.document, self.files.project.as_deref());
-        }
+        self.put_aside();
         self.worker.open_model(source, options);
+    }
+
+    /// Reads the scene's files again.
+    pub fn reload(&mut self) {
+        self.put_aside();
+        self.worker.reload();
+    }
+
+    /// Saves unsaved edits for recovery before a model is read: FBX and OBJ are read in C, where a fault would end the program.
+    fn put_aside(&mut self) {
+        if !self.edits.is_saved(&self.document) {
+            let done = self.autosave.keep(&self.document, self.files.project.as_deref());
+            self.worker.wait_for(done);
+        }
     }
 
     /// Takes files that were dropped together. Models are shown together; what they name is looked for among the files,
@@ -287,7 +298,7 @@ impl App {
         }
         files.extend(scene.document.pictures().map(Path::to_owned));
         if self.files.watched.watch(ctx, files) {
-            self.worker.reload();
+            self.reload();
             self.restart_rival();
         }
     }

@@ -9,7 +9,7 @@ use crate::{
     document::MaterialSettings,
     handlers::files::finish,
     render::{Progress, output, output::Layers, worker::Activity},
-    services::{disk::Task, export::ready, messages::Entry},
+    services::{disk::Task, export::ready, messages::LogEntry},
     sheets::{dialogs::Purpose, export::Answer},
     store::{
         exchange::{self, Registered, Subject, report::Outcome},
@@ -31,11 +31,16 @@ pub enum Destination {
 impl App {
     /// Hands the image over as soon as it is whole.
     pub fn want_picture(&mut self, to: Destination) {
-        if self.worker.snapshot().picture.is_none() {
-            self.warn("there is no image yet");
-        } else {
-            self.files.wanted_pictures.push(to);
+        let snapshot = self.worker.snapshot();
+        let Some(picture) = &snapshot.picture else {
+            return self.warn("there is no image yet");
+        };
+        if !self.is_whole(picture) && snapshot.activity == Activity::Rendering {
+            self.say(LogEntry::done(
+                "The image follows once every pixel has a sample.".to_owned(),
+            ));
         }
+        self.files.wanted_pictures.push(to);
     }
 
     /// Delivers the image if one was requested. While something is being changed there are only small previews, which
@@ -66,13 +71,13 @@ impl App {
                     let (picture, details) = (picture.clone(), details.clone());
                     self.write_beside(move || {
                         output::write(&path, picture.rendered(), &picture.document).map_err(crate::in_words)?;
-                        Ok(Entry::done_with("Saved", &path, &details).finished(is_finished))
+                        Ok(LogEntry::done_with("Saved", &path, &details).finished(is_finished))
                     });
                 }
                 Destination::Clipboard => {
                     let size = [picture.width as usize, picture.height as usize];
                     ctx.copy_image(egui::ColorImage::from_rgba_premultiplied(size, &picture.rgba));
-                    self.say(Entry::done(format!("Copied the image: {details}")).finished(is_finished));
+                    self.say(LogEntry::done(format!("Copied the image: {details}")).finished(is_finished));
                 }
             }
         }
@@ -85,7 +90,7 @@ impl App {
         self.write_beside(move || {
             output::write_layers(&path, &layers).map_err(crate::in_words)?;
             let details = format!("layers, {samples}");
-            Ok(Entry::done_with("Saved", &path, &details).finished(is_finished))
+            Ok(LogEntry::done_with("Saved", &path, &details).finished(is_finished))
         });
     }
 }
@@ -120,7 +125,11 @@ impl App {
             let opaque = |pixel: &egui::Color32| [pixel.r(), pixel.g(), pixel.b(), 255];
             let rgba: Vec<u8> = image.pixels.iter().flat_map(opaque).collect();
             save_atomically(&path, &png_bytes([width, height], &rgba, None)?).map_err(crate::in_words)?;
-            Ok(Entry::done_with("Saved", &path, &format!("{width} × {height} pixels")))
+            Ok(LogEntry::done_with(
+                "Saved",
+                &path,
+                &format!("{width} × {height} pixels"),
+            ))
         });
     }
 
@@ -194,13 +203,13 @@ impl App {
         };
         self.write(move || {
             prepared.save().map_err(crate::in_words)?;
-            Ok(Entry::done_with("Exported", &prepared.report.output, ""))
+            Ok(LogEntry::done_with("Exported", &prepared.report.output, ""))
         });
     }
 }
 
 /// A material as a format's text, and what to say about it.
-fn as_text(material: MaterialSettings, format: &Registered) -> Result<(String, Entry), String> {
+fn as_text(material: MaterialSettings, format: &Registered) -> Result<(String, LogEntry), String> {
     let name = material.name.clone();
     let path = PathBuf::from(&name).with_extension(format.extensions[0]);
     let prepared = exchange::prepare(&Subject::of(material), &name, &path, format).map_err(crate::in_words)?;
@@ -210,5 +219,5 @@ fn as_text(material: MaterialSettings, format: &Registered) -> Result<(String, E
         [near, gone] => format!("Copied {name}: {}, {near} approximated, {gone} dropped", format.label),
     };
     let text = prepared.text().ok_or("this format is no text; export it to a file")?;
-    Ok((text.to_owned(), Entry::done(words)))
+    Ok((text.to_owned(), LogEntry::done(words)))
 }

@@ -59,11 +59,14 @@ pub fn log_log(name: &str, axes: [&str; 2], height: f32, margin: [f32; 2]) -> Pl
         .set_margin_fraction(margin.into())
 }
 
+/// Least height of a chart, points.
+pub const HEIGHT_MIN: f32 = 110.0;
+
 /// Height of a chart: a share of the width that is left, but no more than the panel has beside the rest of its contents,
 /// points.
 pub fn height(ui: &Ui, share: f32, rest: f32) -> f32 {
     let room = ui.clip_rect().height() - rest;
-    (share * ui.available_width()).min(room).clamp(110.0, 420.0)
+    (share * ui.available_width()).min(room).clamp(HEIGHT_MIN, 420.0)
 }
 
 /// A line through points.

@@ -19,7 +19,7 @@ use crate::{
 /// The share of a row that its label takes.
 const LABEL_SHARE: f32 = 0.40;
 /// The least width of a label, points.
-const LABEL_MIN: f32 = 84.0;
+const LABEL_MIN: f32 = 64.0;
 /// Width of a colour's swatch beside its code at least, points.
 const SWATCH_MIN: f32 = 26.0;
 /// Width of a colour's hexadecimal field, points.
@@ -355,7 +355,11 @@ fn linear_of(text: &str) -> Option<[f32; 3]> {
     Some(linear_from_srgb(vec3(r, g, b)).to_f32())
 }
 
-/// Three numbers side by side, with what each is called.
+/// Least width of a number of three digits behind the point, and the space around it, points.
+const TRIPLE_MIN: f32 = 38.0;
+const TRIPLE_SPACING: f32 = 3.0;
+
+/// Three numbers with what each is called: side by side, or where there is no room one below the other.
 pub fn triple<N: Numeric>(
     ui: &mut Ui,
     name: &str,
@@ -363,15 +367,26 @@ pub fn triple<N: Numeric>(
     range: RangeInclusive<f64>,
     parts: [&str; 3],
 ) -> Response {
-    let spacing = ui.spacing().item_spacing.x;
-    let width = ((ui.available_width() - 2.0 * spacing) / 3.0).max(30.0);
-    let responses = values.iter_mut().zip(parts).map(|(value, part)| {
-        let drag = DragValue::new(value).range(range.clone()).speed(0.01).max_decimals(3);
-        ui.add_sized(Vec2::new(width, ROW_HEIGHT), drag)
-            .accessible_name(format!("{name}, {part}"))
-    });
-    let whole = responses.reduce(|whole, response| whole.union(response));
-    whole.unwrap_or_else(|| ui.label(""))
+    let whole = ui.available_width();
+    let third = (whole - 2.0 * TRIPLE_SPACING) / 3.0;
+    let has_room = third >= TRIPLE_MIN;
+    let size = Vec2::new(if has_room { third } else { whole }, ROW_HEIGHT);
+    let numbers = |ui: &mut Ui| {
+        let spacing = ui.spacing_mut();
+        (spacing.item_spacing.x, spacing.button_padding.x) = (TRIPLE_SPACING, TRIPLE_SPACING);
+        spacing.interact_size.x = size.x;
+        let responses = values.iter_mut().zip(parts).map(|(value, part)| {
+            let drag = DragValue::new(value).range(range.clone()).speed(0.01).max_decimals(3);
+            ui.add_sized(size, drag).accessible_name(format!("{name}, {part}"))
+        });
+        responses.reduce(|whole, response| whole.union(response))
+    };
+    let shown = if has_room {
+        ui.horizontal(numbers)
+    } else {
+        ui.vertical(numbers)
+    };
+    shown.inner.unwrap_or(shown.response)
 }
 
 /// One of several: (value, label, help).
@@ -434,8 +449,12 @@ pub fn group(ui: &mut Ui, title: &str, body: impl FnOnce(&mut Ui)) {
 /// The same, opened or closed by the program in this frame.
 pub fn group_open(ui: &mut Ui, title: &str, opens: Option<bool>, body: impl FnOnce(&mut Ui)) {
     let is_requested = requested(ui).is_some_and(|requested| requested.group == title);
-    let header = RichText::new(title).strong();
-    let shown = CollapsingHeader::new(header)
+    // egui's heading would be as wide as its text.
+    let header = WidgetText::from(RichText::new(title).strong());
+    let width = ui.available_width() - ui.spacing().indent - ui.spacing().button_padding.x;
+    let header = header.into_galley(ui, Some(TextWrapMode::Truncate), width, TextStyle::Button);
+    let is_cut = header.elided;
+    let mut shown = CollapsingHeader::new(header)
         .id_salt(title)
         .default_open(opens.unwrap_or(true))
         .open(is_requested.then_some(true).or(opens))
@@ -444,6 +463,9 @@ pub fn group_open(ui: &mut Ui, title: &str, opens: Option<bool>, body: impl FnOn
             body(ui);
             ui.add_space(theme::GAP);
         });
+    if is_cut {
+        shown.header_response = shown.header_response.on_hover_text(title);
+    }
     show_focus(ui, &shown.header_response);
 }
 
@@ -486,9 +508,19 @@ pub fn name_field(ui: &mut Ui, name: &mut String) -> Option<Option<String>> {
     }
     if !field.has_focus() {
         field.scroll_to_me(Some(Align::Center));
+        // What is typed replaces the old name.
+        select(ui.ctx(), field.id, [0, name.chars().count()]);
     }
     field.request_focus();
     None
+}
+
+/// Selects a field's text from one place to another.
+pub fn select(ctx: &Context, field: Id, places: [usize; 2]) {
+    let [from, to] = places.map(text::CCursor::new);
+    let mut state = text_edit::TextEditState::load(ctx, field).unwrap_or_default();
+    state.cursor.set_char_range(Some(text::CCursorRange::two(from, to)));
+    state.store(ctx, field);
 }
 
 /// A field for words over the width that is left, and what it is called.

@@ -5,7 +5,7 @@ use egui_plot::{Plot, PlotUi, Points};
 use super::*;
 use crate::{
     document::custom_curve::{CustomCurve, DISTANCE_MAX, DISTANCE_MIN, POINTS_MAX, XI_STEP_MIN},
-    kit::charts::{height, line, nearest, rounded_up, short, still},
+    kit::charts::{HEIGHT_MIN, height, line, nearest, rounded_up, short, still},
     kit::widgets::Name,
     optics::curve::{Curve, curve_density, curve_distance, curve_distance_max},
 };
@@ -16,6 +16,8 @@ const STEPS: usize = 240;
 const POINTS: usize = 33;
 /// Steps of the line along which those points are spread.
 const FINE_STEPS: usize = 1000;
+/// Height of the rows around both plots, points.
+const ROWS: f32 = 150.0;
 /// What ctrl snaps to.
 const SNAP: f64 = 0.05;
 
@@ -135,9 +137,13 @@ fn shares(steps: usize) -> impl Iterator<Item = f64> {
 
 /// A plot from 0 to these ends.
 fn plot<'a>(ui: &Ui, id: &str, label: &'a str, [right, top]: [f64; 2]) -> Plot<'a> {
-    // Two of them, and the rows.
-    let rest = 0.5 * (ui.clip_rect().height() + 150.0);
-    still(id, height(ui, 0.62, rest), [short, short])
+    // Two of them and the rows; where that is too little, one after the other fills the panel.
+    let room = ui.clip_rect().height();
+    let [share, rest] = match 0.5 * (room - ROWS) < HEIGHT_MIN {
+        true => [f32::INFINITY, 0.5 * ROWS],
+        false => [0.62, 0.5 * (room + ROWS)],
+    };
+    still(id, height(ui, share, rest), [short, short])
         .x_axis_label(label)
         .include_x(0.0)
         .include_x(right)

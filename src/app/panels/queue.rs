@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::kit::words::time_left;
-use crate::render::queue::{Entry, State};
+use crate::render::queue::{QueuedTask, TaskState};
 
 /// The renders beside the window.
 #[derive(Default)]
@@ -24,7 +24,7 @@ impl Panel for QueuePanel {
             if pause.on_hover_text(help).changed() {
                 queue.pause(is_paused);
             }
-            if widgets::pressed_if(ui, entries.iter().any(Entry::is_over), "Clear finished", "", "") {
+            if widgets::pressed_if(ui, entries.iter().any(QueuedTask::is_over), "Clear finished", "", "") {
                 queue.remove_over();
             }
         });
@@ -36,9 +36,9 @@ impl Panel for QueuePanel {
                  afterwards does not change them.",
             );
         }
-        let first = entries.iter().position(|entry| entry.state == State::Waiting);
+        let first = entries.iter().position(|entry| entry.state == TaskState::Waiting);
         for (index, entry) in entries.iter().enumerate() {
-            let can_be_first = entry.state == State::Waiting && first.is_some_and(|first| first < index);
+            let can_be_first = entry.state == TaskState::Waiting && first.is_some_and(|first| first < index);
             // By its number: those above come to their ends and go.
             widgets::known_by(ui, ("queue", entry.id), |ui| row(ui, desk, entry, can_be_first));
         }
@@ -46,7 +46,7 @@ impl Panel for QueuePanel {
 }
 
 /// A task: its name with what can be done with it, and how it stands.
-fn row(ui: &mut Ui, desk: &Desk, entry: &Entry, can_be_first: bool) {
+fn row(ui: &mut Ui, desk: &Desk, entry: &QueuedTask, can_be_first: bool) {
     let queue = &desk.shared.queue;
     let name = &entry.name;
     ui.horizontal(|ui| {
@@ -55,7 +55,7 @@ fn row(ui: &mut Ui, desk: &Desk, entry: &Entry, can_be_first: bool) {
             if ui.button(word).accessible_name(format!("{word} {name}")).clicked() {
                 queue.remove(entry.id);
             }
-            if entry.state == State::Waiting {
+            if entry.state == TaskState::Waiting {
                 let button = ui.add_enabled(can_be_first, Button::new("Next"));
                 let button = button.accessible_name(format!("Next {name}"));
                 let help = "Renders it before all others that wait.";
@@ -69,15 +69,15 @@ fn row(ui: &mut Ui, desk: &Desk, entry: &Entry, can_be_first: bool) {
         });
     });
     match &entry.state {
-        State::Waiting => widgets::note(ui, "waiting"),
-        State::Rendering(share) => {
+        TaskState::Waiting => widgets::note(ui, "waiting"),
+        TaskState::Rendering(share) => {
             let bar = ui.add(ProgressBar::new(*share as f32).show_percentage());
             bar.accessible_name(format!("Progress of {name}"));
             let left = time_left(*share, entry.since.elapsed().as_secs_f64());
             left.into_iter().for_each(|left| widgets::note(ui, left));
         }
-        State::Done(words) | State::Cancelled(words) => widgets::note(ui, words),
-        State::Failed(why) => widgets::failure(ui, why.clone()),
+        TaskState::Done(words) | TaskState::Cancelled(words) => widgets::note(ui, words),
+        TaskState::Failed(why) => widgets::failure(ui, why.clone()),
     }
     ui.add_space(theme::GAP);
 }

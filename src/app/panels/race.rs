@@ -14,6 +14,7 @@ use crate::{
         words::{about, duration, percent},
     },
     measuring::{StudyWorker, engine, small_document},
+    named::with_defaults,
     render::display::display,
     study::race::{Race, RaceOptions, Runner, race},
     study::technique::{GROUPS, Technique},
@@ -32,13 +33,15 @@ const SECONDS: f64 = 2.0;
 /// References are rendered for up to this many times each technique's racing time.
 const REFERENCE_TIMES: f64 = 4.0;
 
-/// Techniques against each other on this view.
-pub struct RacePanel {
-    worker: StudyWorker<Race>,
-    chosen: Vec<&'static str>,
-    seconds: f64,
-    shows_equal_error: bool,
-    pictured: Option<Pictured>,
+with_defaults! {
+    /// Techniques against each other on this view.
+    pub struct RacePanel {
+        worker: StudyWorker<Race>,
+        chosen: Vec<&'static str> = CHOSEN.to_vec(),
+        seconds: f64 = SECONDS,
+        shows_equal_error: bool,
+        pictured: Option<Pictured>,
+    }
 }
 
 /// The thumbnails of a race.
@@ -46,18 +49,6 @@ struct Pictured {
     race: Arc<Race>,
     /// Of equal time, and of equal error.
     textures: [Vec<TextureHandle>; 2],
-}
-
-impl Default for RacePanel {
-    fn default() -> Self {
-        Self {
-            worker: StudyWorker::default(),
-            chosen: CHOSEN.to_vec(),
-            seconds: SECONDS,
-            shows_equal_error: false,
-            pictured: None,
-        }
-    }
 }
 
 impl Panel for RacePanel {

@@ -111,16 +111,19 @@ impl Autosave {
         None
     }
 
-    /// Puts a document aside at once.
-    pub fn keep(&mut self, document: &Document, project: Option<&Path>) {
+    /// Puts a document aside at once. The channel closes when that is done.
+    pub fn keep(&mut self, document: &Document, project: Option<&Path>) -> Receiver<()> {
         let (kept, project) = (document.clone(), project.map(Path::to_owned));
+        let (open, done) = channel();
         self.order(move |files| {
+            let _open = open;
             let saved = files.own.save(&kept, project.as_deref());
             (files.is_kept, files.is_empty) = (saved.is_ok(), false);
             saved
         });
         self.kept = Some(document.clone());
         self.kept_at = Some(Instant::now());
+        done
     }
 
     /// Removes a leftover, once everything saved before has been written; not where its contents, restored and saved again,

@@ -7,7 +7,7 @@ use crate::{
     analysis::difference::difference,
     document::{Change, Document, MaterialSettings},
     matching::{lobe_of_material, matched_lobe},
-    named::named,
+    named::{named, with_defaults},
     optics::lobe::{Lobe, model::LobeModel},
     render::EngineKind,
     render::worker::{Picture, Snapshot, Worker},
@@ -72,24 +72,26 @@ pub struct Compared {
     pub serial: u64,
 }
 
-/// The comparison; B is only rendered while it is on.
-pub struct Compare {
-    pub is_on: bool,
-    pub view: View,
-    pub rival: Rival,
-    /// It was chosen: it stays until something else is.
-    pub is_chosen: bool,
-    /// Where the divider is, as a share of the image's width.
-    pub divider: f32,
-    /// Changes a second.
-    pub flicker_hz: f32,
-    /// The difference with the full colour; `None` is automatic.
-    pub scale: Option<f32>,
-    pub renderer: Option<Renderer>,
-    matching: Beside<MatchQuery, (MatchQuery, Result<LobeModel, String>)>,
-    differing: Beside<DifferenceQuery, Arc<Compared>>,
-    /// Counts B's renderers: serial numbers restart with each.
-    pub generation: u64,
+with_defaults! {
+    /// The comparison; B is only rendered while it is on.
+    pub struct Compare {
+        pub is_on: bool,
+        pub view: View,
+        pub rival: Rival = Rival::Lobe(Lobe::Ggx),
+        /// It was chosen: it stays until something else is.
+        pub is_chosen: bool,
+        /// Where the divider is, as a share of the image's width.
+        pub divider: f32 = 0.5,
+        /// Changes a second.
+        pub flicker_hz: f32 = 2.0,
+        /// The difference with the full colour; `None` is automatic.
+        pub scale: Option<f32>,
+        pub renderer: Option<Renderer>,
+        matching: Beside<MatchQuery, (MatchQuery, Result<LobeModel, String>)>,
+        differing: Beside<DifferenceQuery, Arc<Compared>>,
+        /// Counts B's renderers: serial numbers restart with each.
+        pub generation: u64,
+    }
 }
 
 pub struct Renderer {
@@ -97,24 +99,6 @@ pub struct Renderer {
     pub engine: EngineKind,
     pub submitted: Option<Document>,
     pub is_paused: bool,
-}
-
-impl Default for Compare {
-    fn default() -> Self {
-        Self {
-            is_on: false,
-            view: View::default(),
-            rival: Rival::Lobe(Lobe::Ggx),
-            is_chosen: false,
-            divider: 0.5,
-            flicker_hz: 2.0,
-            scale: None,
-            renderer: None,
-            matching: Beside::default(),
-            differing: Beside::default(),
-            generation: 0,
-        }
-    }
 }
 
 impl Compare {

@@ -6,7 +6,7 @@ use egui::TextureHandle;
 
 use crate::{
     document::Document,
-    store::library::{Entry, Removed},
+    store::library::{LibraryMaterial, Removed},
     store::snapshots::Pinned,
 };
 
@@ -55,6 +55,6 @@ impl<T> Folder<T> {
 }
 
 /// By name.
-pub type Library = Folder<Entry>;
+pub type Library = Folder<LibraryMaterial>;
 /// The newest first, with their images.
 pub type Snapshots = Folder<(Pinned, TextureHandle)>;

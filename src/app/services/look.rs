@@ -1,7 +1,7 @@
 //! What of the image is looked at closely: a pixel, and what is seen there.
 
 /// A pixel, as shares of the image's width and height.
-pub type Place = [f64; 2];
+pub type ImagePoint = [f64; 2];
 
 /// What is seen at a place of the image.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,7 +27,7 @@ pub struct Look {
     pub is_shown: bool,
     pub was_shown: bool,
     /// The pixel under the pointer, or the one that it was at last, or that it is pinned to.
-    pub at: Option<Place>,
+    pub at: Option<ImagePoint>,
     /// It stays where it is while the pointer moves on.
     pub is_pinned: bool,
     pub seen: Option<SeenSurface>,
@@ -40,7 +40,7 @@ impl Look {
     }
 
     /// Pins the pixel until it is released.
-    pub fn pin(&mut self, at: Place) {
+    pub fn pin(&mut self, at: ImagePoint) {
         (self.at, self.is_pinned) = (Some(at), true);
     }
 
@@ -53,7 +53,7 @@ impl Look {
 }
 
 /// The middle of a pixel of an image of this size.
-pub fn middle([x, y]: [u32; 2], [width, height]: [u32; 2]) -> Place {
+pub fn middle([x, y]: [u32; 2], [width, height]: [u32; 2]) -> ImagePoint {
     let share = |index: u32, side: u32| (f64::from(index) + 0.5) / f64::from(side.max(1));
     [share(x, width), share(y, height)]
 }

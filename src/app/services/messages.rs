@@ -19,7 +19,7 @@ pub enum Offer {
 
 /// Something said.
 #[derive(Clone, Debug)]
-pub struct Entry {
+pub struct LogEntry {
     /// Distinguishes it from the others for as long as the window lives.
     pub number: u64,
     pub level: Level,
@@ -32,7 +32,7 @@ pub struct Entry {
     pub offer: Option<Offer>,
 }
 
-impl Entry {
+impl LogEntry {
     pub fn new(level: Level, text: String) -> Self {
         Self {
             number: 0,
@@ -70,7 +70,7 @@ impl Entry {
 }
 
 /// Adds an entry; one that says the same as the last stays that one, and is new again.
-pub fn add(log: &mut Vec<Entry>, mut entry: Entry) {
+pub fn add(log: &mut Vec<LogEntry>, mut entry: LogEntry) {
     let text = &entry.text;
     match (entry.level, &entry.file) {
         (Level::Error, _) => log::error!("{text}"),
@@ -89,7 +89,7 @@ pub fn add(log: &mut Vec<Entry>, mut entry: Entry) {
 }
 
 /// Adds what became of a model's file where that is not all as the file says.
-pub fn add_import(log: &mut Vec<Entry>, name: &str, report: &ImportReport) {
+pub fn add_import(log: &mut Vec<LogEntry>, name: &str, report: &ImportReport) {
     let Some(worst) = Fate::ALL[1..].iter().rev().find_map(|fate| report.of(*fate).next()) else {
         return;
     };
@@ -111,9 +111,9 @@ pub fn add_import(log: &mut Vec<Entry>, name: &str, report: &ImportReport) {
     };
     let text = format!("{name}: {}{parts} – {meaning}.{more}", worst.what);
     let entry = match worst.fate {
-        Fate::Used | Fate::Approximated => Entry::done(text),
-        _ => Entry::new(Level::Warning, text),
+        Fate::Used | Fate::Approximated => LogEntry::done(text),
+        _ => LogEntry::new(Level::Warning, text),
     };
     let offer = Some(Offer::ImportReport);
-    add(log, Entry { offer, ..entry });
+    add(log, LogEntry { offer, ..entry });
 }

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     document::MaterialSettings,
+    named::with_defaults,
     scene::{environment::EnvironmentSource, path_text::file_name},
     services::beside::Beside,
     store::preset::command_line_name,
@@ -16,16 +17,18 @@ use crate::{
 /// From one look into the watched folders to the next, while they are seen.
 const INTERVAL: Duration = Duration::from_secs(2);
 
-/// What is remembered from one start to the next. Things are known by a key: `preset:gold`, `environment:studio`, or a path.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
-pub struct KeptShelves {
-    /// Those that come first.
-    pub favourites: BTreeSet<String>,
-    /// Folders that are watched.
-    pub folders: Vec<PathBuf>,
-    /// Side of a material's image, points; [`LIST`] and below are rows of a list.
-    pub picture_side: f32,
+with_defaults! {
+    /// What is remembered from one start to the next. Things are known by a key: `preset:gold`, `environment:studio`, or a path.
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+    #[serde(default)]
+    pub struct KeptShelves {
+        /// Those that come first.
+        pub favourites: BTreeSet<String>,
+        /// Folders that are watched.
+        pub folders: Vec<PathBuf>,
+        /// Side of a material's image, points; [`LIST`] and below are rows of a list.
+        pub picture_side: f32 = 80.0,
+    }
 }
 
 /// The key of a shipped material.
@@ -53,16 +56,6 @@ pub fn environment_key(source: &EnvironmentSource) -> String {
 pub const LIST: f32 = 36.0;
 /// The largest side of an image.
 pub const SIDE_MAX: f32 = 256.0;
-
-impl Default for KeptShelves {
-    fn default() -> Self {
-        Self {
-            favourites: BTreeSet::new(),
-            folders: Vec::new(),
-            picture_side: 80.0,
-        }
-    }
-}
 
 impl KeptShelves {
     /// Makes something a favourite, or none any more.

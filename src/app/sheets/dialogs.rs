@@ -369,7 +369,7 @@ impl PathField {
         let outcome = self.outcome(ui, is_entered);
         if is_continued || (is_entered && outcome.is_none()) {
             response.request_focus();
-            move_cursor_to_end(ui.ctx(), id, &self.text);
+            widgets::select(ui.ctx(), id, [self.text.chars().count(); 2]);
         }
         outcome
     }
@@ -399,14 +399,6 @@ impl PathField {
         };
         ui.horizontal(buttons).inner
     }
-}
-
-fn move_cursor_to_end(ctx: &Context, id: Id, text: &str) {
-    use egui::text::{CCursor, CCursorRange};
-    let mut state = egui::text_edit::TextEditState::load(ctx, id).unwrap_or_default();
-    let end = CCursor::new(text.chars().count());
-    state.cursor.set_char_range(Some(CCursorRange::one(end)));
-    state.store(ctx, id);
 }
 
 /// Folders, and files with one of the endings, that begin with a path.

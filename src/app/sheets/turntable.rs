@@ -6,7 +6,7 @@ use super::*;
 use crate::{
     document::{CameraSettings, Denoise, turntable::Turn},
     kit::words::duration,
-    named::named,
+    named::{named, with_defaults},
     render::Progress,
     render::turntable::{FPS, Turntable},
     store::video,
@@ -48,36 +48,21 @@ pub struct Preview {
     pub camera: CameraSettings,
 }
 
-pub struct TurntableSheet {
-    pub is_open: bool,
-    frames: u32,
-    pub turn: Turn,
-    /// The turn that the viewport shows.
-    pub preview: Option<Preview>,
-    form: Form,
-    fps: f64,
-    pub samples: u32,
-    /// The denoised error at which a frame ends, before it has its samples; 0: none.
-    noise: f64,
-    pub size: [u32; 2],
-    /// The folder or the file.
-    pub output: String,
-}
-
-impl Default for TurntableSheet {
-    fn default() -> Self {
-        Self {
-            is_open: false,
-            frames: FRAMES,
-            turn: Turn::default(),
-            preview: None,
-            form: Form::default(),
-            fps: FPS,
-            samples: 0,
-            noise: NOISE,
-            size: [0; 2],
-            output: String::new(),
-        }
+with_defaults! {
+    pub struct TurntableSheet {
+        pub is_open: bool,
+        frames: u32 = FRAMES,
+        pub turn: Turn,
+        /// The turn that the viewport shows.
+        pub preview: Option<Preview>,
+        form: Form,
+        fps: f64 = FPS,
+        pub samples: u32,
+        /// The denoised error at which a frame ends, before it has its samples; 0: none.
+        noise: f64 = NOISE,
+        pub size: [u32; 2],
+        /// The folder or the file.
+        pub output: String,
     }
 }
 

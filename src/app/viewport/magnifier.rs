@@ -1,24 +1,18 @@
 //! A closer look at the pixels that the image has, without moving the camera.
 
 use super::*;
+use crate::named::with_defaults;
 
 /// Largest size of one of the image's pixels, points.
 const PIXEL_MAX: f32 = 48.0;
 
-/// How much larger than it fits the image is shown, and which part of it.
-pub struct Magnifier {
-    /// 1: as large as it fits.
-    factor: f32,
-    /// What is in the middle of the viewport, as shares of the image.
-    center: Vec2,
-}
-
-impl Default for Magnifier {
-    fn default() -> Self {
-        Self {
-            factor: 1.0,
-            center: Vec2::splat(0.5),
-        }
+with_defaults! {
+    /// How much larger than it fits the image is shown, and which part of it.
+    pub struct Magnifier {
+        /// 1: as large as it fits.
+        factor: f32 = 1.0,
+        /// What is in the middle of the viewport, as shares of the image.
+        center: Vec2 = Vec2::splat(0.5),
     }
 }
 

@@ -55,7 +55,7 @@ impl Scene {
 
 /// An entry of a list.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Entry {
+pub struct Variant {
     /// Its part of the images' names.
     pub name: String,
     /// What it sets, as arguments of `glossmith render`.
@@ -74,7 +74,7 @@ pub struct BatchFile {
     /// What all images have in common, as arguments.
     pub common: Vec<String>,
     /// The lists that are there.
-    pub lists: Vec<Vec<Entry>>,
+    pub lists: Vec<Vec<Variant>>,
     /// Frames of a whole turn; none where nothing turns.
     pub frames: Option<u32>,
     /// What turns.
@@ -132,7 +132,7 @@ fn assignments(path: &str, table: &Table, arguments: &mut Vec<String>) {
 }
 
 /// An entry of a list whose texts stand for an option.
-fn entry(folder: &Path, value: &Value, option: Option<&str>) -> anyhow::Result<Entry> {
+fn entry(folder: &Path, value: &Value, option: Option<&str>) -> anyhow::Result<Variant> {
     let (name, options) = match (value, option) {
         (Value::String(text), Some(option)) => {
             let stem = Path::new(text)
@@ -149,7 +149,7 @@ fn entry(folder: &Path, value: &Value, option: Option<&str>) -> anyhow::Result<E
         (_, Some(_)) => bail!("an entry is a text, or a table with a name and options"),
         (_, None) => bail!("an entry is a table, such as {{ name = \"a\", samples = 64 }}"),
     };
-    Ok(Entry {
+    Ok(Variant {
         name: plain(&name),
         arguments: arguments(folder, options)?,
     })
@@ -199,7 +199,7 @@ impl BatchFile {
         ];
         for (key, option, list) in lists {
             let Some(list) = list else { continue };
-            let mut entries: Vec<Entry> = Vec::new();
+            let mut entries: Vec<Variant> = Vec::new();
             for value in list.get_ref() {
                 let entry = entry(beside, value.get_ref(), option);
                 let entry = entry.map_err(|error| wrong(value.span(), format!("{key}: {error:#}")))?;
@@ -255,7 +255,7 @@ impl BatchFile {
         let mut pictures = vec![Picture::default()];
         pictures[0].arguments = self.common.clone();
         for list in &self.lists {
-            let with = |picture: &Picture, entry: &Entry| Picture {
+            let with = |picture: &Picture, entry: &Variant| Picture {
                 name: joined(&picture.name, &entry.name),
                 arguments: [&picture.arguments[..], &entry.arguments].concat(),
                 ..*picture

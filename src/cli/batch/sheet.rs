@@ -12,7 +12,7 @@ use crate::{
     document::ViewSettings,
     job::film::Image,
     plot::{PictureSheet, plot_file},
-    store::{picture::png_bytes, replace::save_atomically},
+    store::{picture::png_bytes, picture::png_image, replace::save_atomically},
 };
 
 /// Longest side of a thumbnail, pixels.
@@ -42,10 +42,10 @@ pub fn write_thumbnail(folder: &Path, name: &str, image: &Image, view: &ViewSett
 /// A thumbnail on paper, in the middle of a square; paper alone where there is none.
 fn cell(path: &Path) -> RgbImage {
     let mut cell = image::RgbaImage::from_pixel(SIDE, SIDE, image::Rgba([PAPER, PAPER, PAPER, 255]));
-    if let Ok(picture) = image::open(path) {
+    if let Some(picture) = std::fs::read(path).ok().and_then(|bytes| png_image(&bytes).ok()) {
         let corner = |length: u32| i64::from(SIDE.saturating_sub(length) / 2);
         let (x, y) = (corner(picture.width()), corner(picture.height()));
-        overlay(&mut cell, &picture.to_rgba8(), x, y);
+        overlay(&mut cell, &picture, x, y);
     }
     image::DynamicImage::ImageRgba8(cell).to_rgb8()
 }

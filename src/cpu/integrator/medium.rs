@@ -111,5 +111,8 @@ fn media_towards<T: Single, R: Recorder>(
 /// Beer–Lambert transmittance over a distance, per channel.
 #[inline(always)]
 fn transmittance_over<T: Single>(absorption: Vec3<T>, distance: T) -> Vec3<T> {
-    (absorption * distance).map(|thickness| (-thickness).exp())
+    (absorption * distance).map(
+        #[inline(always)]
+        |thickness| (-thickness).exp(),
+    )
 }

@@ -159,40 +159,50 @@ impl<'a, T: Single> Integrator<'a, T> {
     pub fn new(job: &'a Job) -> Self {
         let samples_light = job.settings.strategy != Strategy::Lobe;
         let choice = job.settings.light_choice;
-        Self {
-            geometry: &job.geometry,
-            environment: &job.environment,
-            distribution: job.distribution(),
-            tables: &job.tables,
-            textures: &job.textures,
-            has_holes: job.plan.has(EffectId::Alpha),
-            has_absorption: job.plan.has(EffectId::Absorption),
-            settings: &job.settings,
-            materials: job.materials.iter().map(Material::cast).collect(),
-            scalar_materials: &job.materials,
-            camera: job.settings.camera.cast(),
-            rotation: job.settings.environment_rotation.map(T::from_f64),
-            lights: &job.lights,
-            environment_probability: T::from_f64(choice.environment_probability),
-            density_per_luminance: T::from_f64(choice.density_per_luminance),
-            samples_environment: job.plan.has(EffectId::LightSampling)
-                && samples_light
-                && choice.environment_probability > 0.0,
-            samples_emitters: job.plan.has(EffectId::EmitterSampling)
-                && samples_light
-                && choice.density_per_luminance > 0.0,
-            is_interreflecting: job.plan.has(EffectId::Interreflection),
-            guide_samples: if job.plan.has(EffectId::Guides) {
-                GUIDE_SAMPLES
-            } else {
-                0
-            },
-            light_groups: job.settings.light_groups as usize,
-            firefly_clamp: job
-                .plan
-                .has(EffectId::FireflyClamp)
-                .then(|| T::from_f64(job.settings.firefly_clamp)),
-        }
+        let mut materials = Vec::with_capacity(job.materials.len());
+        vectorized!(T, {
+            for material in job.materials.iter() {
+                materials.push(material.cast());
+            }
+        });
+        let [cosine, sine] = job.settings.environment_rotation;
+        vectorized!(
+            T,
+            Self {
+                geometry: &job.geometry,
+                environment: &job.environment,
+                distribution: job.distribution(),
+                tables: &job.tables,
+                textures: &job.textures,
+                has_holes: job.plan.has(EffectId::Alpha),
+                has_absorption: job.plan.has(EffectId::Absorption),
+                settings: &job.settings,
+                materials,
+                scalar_materials: &job.materials,
+                camera: job.settings.camera.cast(),
+                rotation: [T::from_f64(cosine), T::from_f64(sine)],
+                lights: &job.lights,
+                environment_probability: T::from_f64(choice.environment_probability),
+                density_per_luminance: T::from_f64(choice.density_per_luminance),
+                samples_environment: job.plan.has(EffectId::LightSampling)
+                    && samples_light
+                    && choice.environment_probability > 0.0,
+                samples_emitters: job.plan.has(EffectId::EmitterSampling)
+                    && samples_light
+                    && choice.density_per_luminance > 0.0,
+                is_interreflecting: job.plan.has(EffectId::Interreflection),
+                guide_samples: if job.plan.has(EffectId::Guides) {
+                    GUIDE_SAMPLES
+                } else {
+                    0
+                },
+                light_groups: job.settings.light_groups as usize,
+                firefly_clamp: match job.plan.has(EffectId::FireflyClamp) {
+                    true => Some(T::from_f64(job.settings.firefly_clamp)),
+                    false => None,
+                },
+            }
+        )
     }
 
     /// The random sequence from which paths draw.

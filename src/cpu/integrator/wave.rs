@@ -247,7 +247,8 @@ impl<T: Single> Integrator<'_, T> {
                 }
             }
             for group in groups::<T>(escaped.clone()) {
-                let uv = paths.environment_uv.each_ref().map(|axis| group.number(axis));
+                let [u, v] = &paths.environment_uv;
+                let uv = [group.number(u), group.number(v)];
                 out_of_line!(T, self.escape(&PathVertex::new(group, bounce, paths), uv, paths));
             }
             if samples_light && self.samples_environment {

@@ -4,7 +4,7 @@ use std::{fmt::Display, io, path::Path};
 
 use super::error::EnvironmentError;
 use crate::{
-    limits::{BYTES_MAX, Budget, OverBudget, open, read_watched},
+    limits::{BYTES_MAX, Budget, OverBudget, length, read_watched},
     optics::primaries::{Chromaticities, Matrix, NoSpace, transformed},
     scene::Loading,
     scene::environment::{EnvironmentEncoding, MAX_HEIGHT, MAX_WIDTH, MapError, SOURCE_MAX_HEIGHT, SOURCE_MAX_WIDTH},
@@ -24,7 +24,7 @@ pub(super) struct Source<'a> {
 impl Source<'_> {
     /// Contents of the file, counted against the budget.
     pub(super) fn bytes(&self) -> Result<Vec<u8>, EnvironmentError> {
-        let length = self.io(open(self.path).and_then(|file| file.metadata()))?.len();
+        let length = self.io(length(self.path))?;
         self.within(self.budget.take(length))?;
         self.io(read_watched(self.path, BYTES_MAX, self.loading))
     }

@@ -6,7 +6,7 @@ use image::{ImageDecoder, ImageError, codecs::hdr::HdrDecoder};
 
 use super::canvas::{Canvas, Picture, Source};
 use super::error::EnvironmentError;
-use crate::optics::primaries::Chromaticities;
+use crate::{optics::primaries::Chromaticities, picture::radiance_gains};
 
 /// Lines between two progress reports.
 const LINES_A_STEP: u32 = 256;
@@ -63,17 +63,12 @@ pub(super) fn read(source: Source<'_>) -> Result<Picture, EnvironmentError> {
         let format: String = format.chars().take(40).collect();
         return Err(source.unsupported(format!("the format {format}"), "re-save it as 32-bit_rle_rgbe"));
     }
-    // What earlier programs multiplied the colours by.
-    let corrections = values("COLORCORR=").filter_map(numbers::<3>);
-    let correction = corrections.fold([1.0; 3], |all, one| [0, 1, 2].map(|i| all[i] * one[i]));
-    let gains = correction.map(|factor| if factor > 0.0 { (1.0 / factor) as f32 } else { 1.0 });
+    let gains = radiance_gains(&bytes);
     let space = values("PRIMARIES=").filter_map(numbers::<8>).next_back();
     let space = space.map(|[rx, ry, gx, gy, bx, by, wx, wy]| Chromaticities {
         primaries: [[rx, ry], [gx, gy], [bx, by]],
         white: [wx, wy],
     });
-    let exposures = values("EXPOSURE=").filter_map(|value| value.parse::<f32>().ok());
-    let has_exposure = exposures.product::<f32>() != 1.0;
     let mut canvas = Canvas::new(source, width.into(), height.into())?;
     let mut line = vec![0.0_f32; 3 * width as usize];
     for row in 0..height {
@@ -93,10 +88,6 @@ pub(super) fn read(source: Source<'_>) -> Result<Picture, EnvironmentError> {
     let mut picture = canvas.finish();
     if let Some(space) = if is_xyz { Some(XYZ) } else { space } {
         picture.bring_to_rec709(source.path, &space);
-    }
-    if has_exposure {
-        let text = "The file's EXPOSURE is ignored, as most programs do; set the strength instead.";
-        picture.warnings.push(text.to_owned());
     }
     Ok(picture)
 }

@@ -211,12 +211,15 @@ impl Reader<'_> {
         while let Some(node) = above {
             let first = node.children.as_ref().first().map(|child| child.element.element_id);
             let is_coarse = below.is_some_and(|below| Some(below.element.element_id) != first);
-            if !node.visible || node.attrib_type == ElementType::LodGroup && is_coarse {
-                let what = match node.visible {
+            // Before FBX 6 it was a percentage, which the crate takes for 0.
+            let share = node.element.props.find_prop("Visibility");
+            let is_visible = node.visible || share.is_some_and(|share| share.value_vec4.x > 0.0);
+            if !is_visible || node.attrib_type == ElementType::LodGroup && is_coarse {
+                let what = match is_visible {
                     true => "coarser levels of detail",
                     false => "hidden nodes, not shown",
                 };
-                let fate = if node.visible { Fate::Ignored } else { Fate::Used };
+                let fate = if is_visible { Fate::Ignored } else { Fate::Used };
                 self.report.note(fate, what, &node.element.name);
                 return false;
             }

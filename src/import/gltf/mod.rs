@@ -36,7 +36,7 @@ use crate::{
     model_error::ModelError,
     scene::{
         Model, ModelOptions,
-        report::{Entry, Fate, ImportReport},
+        report::{Fate, ImportNote, ImportReport},
     },
 };
 
@@ -77,7 +77,7 @@ fn nothing_to_show(document: &Document, path: &Path, report: &ImportReport) -> M
         return ModelError::refused(path, what);
     }
     let blamed = report.of(Fate::Missing).chain(report.of(Fate::Ignored)).take(3);
-    let blamed: Vec<String> = blamed.map(Entry::line).collect();
+    let blamed: Vec<String> = blamed.map(ImportNote::line).collect();
     let reason = blamed.join(", ");
     if blamed.is_empty() {
         ModelError::no_triangles(path)

@@ -3,10 +3,8 @@
 mod basis;
 mod bmp_runs;
 mod gpu;
-mod shipped;
 mod tiff_files;
 pub(crate) use gpu::is_container;
-pub use shipped::shipped;
 
 use std::{borrow::Cow, fmt, io::Cursor, path::Path};
 
@@ -278,19 +276,16 @@ pub fn read_texture(path: &Path, is_color: bool, side_max: u32, budget: &Budget)
 }
 
 fn read_encoded(path: &Path, budget: &Budget) -> Result<Encoded<'static>, String> {
-    let read = || match shipped(path) {
-        Some(bytes) => Ok(bytes.into()),
-        None => {
-            budget.check(limits::open(path)?.metadata()?.len())?;
-            limits::read(path, limits::BYTES_MAX).map(Cow::Owned)
-        }
+    let read = || {
+        budget.check(limits::length(path)?)?;
+        limits::read(path, limits::BYTES_MAX)
     };
     let name = path
         .file_name()
         .unwrap_or(path.as_os_str())
         .to_string_lossy()
         .into_owned();
-    let bytes = read().map_err(|error: std::io::Error| error.to_string())?;
+    let bytes = read().map_err(|error: std::io::Error| error.to_string())?.into();
     Ok(Encoded { name, bytes })
 }
 
@@ -370,7 +365,24 @@ pub(super) fn decode(
     decoded.unwrap_or_else(|| Err("its pixels contradict each other".into()))
 }
 
-/// Decodes a display-referred format; the name decides if the bytes do not.
+/// What undoes the factors in the header of a Radiance file, which may be several; 1 for one that nothing undoes.
+pub(crate) fn radiance_gains(bytes: &[u8]) -> [f32; 3] {
+    let lines = bytes.split(|byte| *byte == b'\n').map(String::from_utf8_lossy);
+    let mut product = [1.0_f64; 3];
+    for line in lines.take_while(|line| !line.trim().is_empty()) {
+        let factors = line.strip_prefix("EXPOSURE=").or(line.strip_prefix("COLORCORR="));
+        let factors = factors.unwrap_or_default().split_whitespace();
+        let factors: Vec<f64> = factors.filter_map(|word| word.parse().ok()).collect();
+        for (channel, all) in product.iter_mut().enumerate() {
+            *all *= factors.get(channel).or(factors.first()).unwrap_or(&1.0);
+        }
+    }
+    product
+        .map(|factor| (1.0 / factor) as f32)
+        .map(|gain| if gain.is_normal() && gain > 0.0 { gain } else { 1.0 })
+}
+
+/// Decodes a format of the `image` crate; the name decides if the bytes do not.
 fn decode_image(name: &str, bytes: &[u8], is_photo: bool) -> Result<DynamicImage, Refusal> {
     let refused = |error: ImageError| match error {
         ImageError::Unsupported(what) => Refusal::NotRead(what.to_string()),
@@ -381,7 +393,9 @@ fn decode_image(name: &str, bytes: &[u8], is_photo: bool) -> Result<DynamicImage
         .as_ref()
         .map_or((bytes, None), |(bytes, colors)| (bytes, Some(colors)));
     let mut reader = reader(name, bytes).map_err(refused)?;
-    let is_tga = reader.format() == Some(ImageFormat::Tga);
+    let (is_tga, is_hdr) = [ImageFormat::Tga, ImageFormat::Hdr]
+        .map(|format| reader.format() == Some(format))
+        .into();
     let mut limits = Limits::default();
     limits.max_alloc = Some(DECODED_MAX);
     reader.limits(limits.clone());
@@ -401,6 +415,10 @@ fn decode_image(name: &str, bytes: &[u8], is_photo: bool) -> Result<DynamicImage
         && texels.pixels().all(|texel| texel.0[3] == 0)
     {
         texels.pixels_mut().for_each(|texel| texel.0[3] = 255);
+    }
+    if is_hdr {
+        let [r, g, b] = radiance_gains(bytes);
+        picture = mapped(picture, |texel| [r * texel[0], g * texel[1], b * texel[2], texel[3]]);
     }
     if is_photo {
         picture.apply_orientation(orientation);

@@ -11,9 +11,9 @@ use glam::{DVec3, Vec2, Vec4};
 use self::rows::{Element, Property, Row, Rows};
 use crate::{
     files::Files,
+    maps::Maps,
     model_error::ModelError,
     optics::{tone::linear_from_srgb, vector::vec3},
-    picture::Encoded,
     polygon::Polygons,
     scene::{
         Cancelled, Filter, Loading, Model, ModelOptions, Slot, TextureRef, Wrap,
@@ -82,10 +82,12 @@ pub(super) fn load(path: &Path, files: &Files, bytes: &[u8], options: &ModelOpti
     loading.step("normals and tangents")?;
     faces.finish(&mut mesh, loading, &mut model.report);
     let has_uvs = mesh.uvs.iter().any(|uv| *uv != Vec2::ZERO);
+    let mut maps = Maps::new(files, options);
     for name in &names {
-        let slot = textured(files, name, has_uvs, options, &mut model);
+        let slot = textured(&mut maps, name, has_uvs, &mut model.report);
         model.slots.push(slot);
     }
+    model.textures = maps.finish(&mut model.slots);
     if names.is_empty() {
         model.slots.push(Slot::clay());
     }
@@ -104,35 +106,19 @@ pub(super) fn load(path: &Path, files: &Files, bytes: &[u8], options: &ModelOpti
 }
 
 /// Clay with a texture file, grey where that is missing.
-fn textured(files: &Files, name: &str, has_uvs: bool, options: &ModelOptions, model: &mut Model) -> Slot {
+fn textured(maps: &mut Maps<'_>, name: &str, has_uvs: bool, report: &mut ImportReport) -> Slot {
     let mut slot = Slot::clay();
-    let report = &mut model.report;
     if !has_uvs {
         report.note(Fate::Ignored, "a texture without coordinates", name);
-        return slot;
-    }
-    let budget = &files.import.budget;
-    let read = files.read(name).map_err(|error| error.to_string());
-    let read = read.and_then(|bytes| {
-        let (name, bytes) = (name.to_owned(), bytes.into());
-        let scaled = Encoded { name, bytes }.texture(true, options.texture_side_max, budget)?;
-        let taken = budget.take(scaled.texture.bytes() as u64);
-        taken.map_err(|over| over.to_string()).map(|()| scaled)
-    });
-    match read {
-        Ok(scaled) => {
-            scaled.report(report);
-            slot.set("base.color", 1.0);
-            *slot.texture_mut(TextureTarget::BaseColor) = Some(TextureRef {
-                texture: model.textures.len(),
-                uv_set: 0,
-                texture_from_mesh_uv: IDENTITY,
-                wrap: [Wrap::Repeat; 2],
-                filter: Filter::Linear,
-            });
-            model.textures.push(scaled.texture);
-        }
-        Err(reason) => report.note(Fate::Missing, format!("a texture, grey instead ({reason})"), name),
+    } else if let Some(texture) = maps.image(&[name], None, true, report) {
+        slot.set("base.color", 1.0);
+        *slot.texture_mut(TextureTarget::BaseColor) = Some(TextureRef {
+            texture,
+            uv_set: 0,
+            texture_from_mesh_uv: IDENTITY,
+            wrap: [Wrap::Repeat; 2],
+            filter: Filter::Linear,
+        });
     }
     slot
 }

@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use glam::{DAffine2, DVec2};
 use openusd::{sdf::FromValueCast, sdf::Value, usd::Prim, usd::Stage};
 
 use super::{End, Known, end, text_of};
@@ -18,7 +19,7 @@ use crate::{
 };
 
 /// What other surfaces call what is read of them.
-const OTHERS: [(&str, &str); 7] = [
+const OTHERS: [(&str, &str); 16] = [
     ("base_color", "base.color"),
     ("baseColor", "base.color"),
     ("base_metalness", "base.metalness"),
@@ -26,7 +27,19 @@ const OTHERS: [(&str, &str); 7] = [
     ("metallic", "base.metalness"),
     ("specular_roughness", "specular.roughness"),
     ("roughness", "specular.roughness"),
+    ("specular_ior", "specular.ior"),
+    ("specular_IOR", "specular.ior"),
+    ("ior", "specular.ior"),
+    ("transmission_weight", "transmission.weight"),
+    ("transmission", "transmission.weight"),
+    ("coat_weight", "coat.weight"),
+    ("coat", "coat.weight"),
+    ("clearcoat", "coat.weight"),
+    ("coat_roughness", "coat.roughness"),
 ];
+
+/// Most transforms of a texture that are followed.
+const TRANSFORMS_MAX: usize = 16;
 
 /// A slot with the sets of texture coordinates that it looks up, by name.
 type Painted = (Slot, [Option<String>; 2]);
@@ -142,14 +155,17 @@ impl Painter<'_, '_> {
                 End::Value(_) => None,
             });
         let shaders: Vec<(String, Prim)> = shaders.collect();
-        let preview = shaders.iter().find(|(id, _)| id == "UsdPreviewSurface");
+        let preview = shaders.iter().find(|(id, _)| id.contains("UsdPreviewSurface"));
         match (preview, shaders.first()) {
             (Some((_, shader)), _) => self.preview_surface(shader),
             (None, Some((id, shader))) => {
                 for (input, key) in OTHERS {
                     self.input(shader, input, key, None);
                 }
-                let what = format!("a surface of {id}, by its colour, metalness and roughness");
+                self.normal(shader, "normal");
+                self.normal(shader, "geometry_normal");
+                let what =
+                    format!("a surface of {id}, by its colour, metalness, roughness, index, transmission and coat");
                 self.note(Fate::Approximated, what);
             }
             (None, None) => self.note(Fate::Missing, "the surface of a material"),
@@ -166,7 +182,7 @@ impl Painter<'_, '_> {
         let (threshold, has_mode) = (number("opacityThreshold", 0.0), number("opacityMode", 0.0) > 0.0);
         let is_presence = has_mode || text_of(&shader.attribute("inputs:opacityMode")).as_deref() == Some("presence");
         let is_specular = number("useSpecularWorkflow", 0.0) != 0.0;
-        self.normal(shader);
+        self.normal(shader, "normal");
         for row in USD_PREVIEW_SURFACE {
             let [key, _] = row.keys();
             match row.place {
@@ -214,6 +230,10 @@ impl Painter<'_, '_> {
             }
             return;
         };
+        if key == "base.color" && text_of(&node.attribute("inputs:varname")).as_deref() == Some("displayColor") {
+            self.slot.set(key, 1.0);
+            return self.slot.color_by_vertices();
+        }
         let target = TextureTarget::of_key(key, "");
         let is_color = target.map_or(key.ends_with(".color"), TextureTarget::is_color);
         let Some(place) = self.texture(&node, is_color) else {
@@ -251,21 +271,30 @@ impl Painter<'_, '_> {
     }
 
     /// The texture of normals comes first, since tangents follow its coordinates.
-    fn normal(&mut self, shader: &Prim) {
-        if let Some(End::Node(node, _)) = end(shader.attribute("inputs:normal"))
-            && let Some(place) = self.texture(&node, false)
-        {
+    fn normal(&mut self, shader: &Prim, input: &str) {
+        let Some(End::Node(mut node, _)) = end(shader.attribute(format!("inputs:{input}"))) else {
+            return;
+        };
+        // MaterialX has a node between.
+        if let Some(End::Node(image, _)) = end(node.attribute("inputs:in")) {
+            node = image;
+        }
+        if let Some(place) = self.texture(&node, false) {
             *self.slot.texture_mut(TextureTarget::Normal) = Some(place);
         }
     }
 
     /// The image of a node, and where it lies; `None`, and reported, if there is none.
     fn texture(&mut self, node: &Prim, is_color: bool) -> Option<TextureRef> {
-        let file = match end(node.attribute("inputs:file"))? {
-            End::Value(attribute) => attribute.get::<Value>().ok()??,
-            End::Node(..) => return None,
+        let file = match end(node.attribute("inputs:file")) {
+            Some(End::Value(attribute)) => attribute.get::<Value>().ok().flatten(),
+            _ => None,
         };
-        let Value::AssetPath(file) = file else { return None };
+        let Some(Value::AssetPath(file)) = file else {
+            let id = text_of(&node.attribute("info:id")).unwrap_or_default();
+            self.note(Fate::Ignored, format!("a {id} in the place of an image"));
+            return None;
+        };
         let space = text_of(&node.attribute("inputs:sourceColorSpace"));
         if space.is_some_and(|space| space != "auto" && (space == "sRGB") != is_color) {
             self.note(
@@ -273,10 +302,13 @@ impl Painter<'_, '_> {
                 "the colour space of a texture, as is usual for its use",
             );
         }
-        let (mut transform, mut set) = ([1.0, 0.0, 0.0, 0.0, 1.0, 0.0], None);
+        let (mut mapping, mut set) = (DAffine2::IDENTITY, None);
         if let Some(End::Node(mut place, _)) = end(node.attribute("inputs:st")) {
-            if text_of(&place.attribute("info:id")).as_deref() == Some("UsdTransform2d") {
-                transform = transform_of(&place);
+            for _ in 0..TRANSFORMS_MAX {
+                if text_of(&place.attribute("info:id")).as_deref() != Some("UsdTransform2d") {
+                    break;
+                }
+                mapping *= transform_of(&place);
                 if let Some(End::Node(reader, _)) = end(place.attribute("inputs:in")) {
                     place = reader;
                 }
@@ -300,10 +332,13 @@ impl Painter<'_, '_> {
             Some("clamp" | "black") => Wrap::ClampToEdge,
             _ => Wrap::Repeat,
         };
+        // v points downwards here, upwards there.
+        let [[a, b], [c, d]] = mapping.matrix2.transpose().to_cols_array_2d();
+        let [x, y] = mapping.translation.to_array();
         Some(TextureRef {
             texture,
             uv_set,
-            texture_from_mesh_uv: transform,
+            texture_from_mesh_uv: [a, -b, b + x, -c, d, 1.0 - d - y].map(|x| x as f32),
             wrap: ["wrapS", "wrapT"].map(&mut wrap),
             filter: Filter::Linear,
         })
@@ -317,16 +352,14 @@ fn color4(node: &Prim, input: &str, default: f32) -> [f32; 4] {
 }
 
 /// `UsdTransform2d`: scaled, turned counterclockwise, moved; v is upwards there on both sides.
-fn transform_of(node: &Prim) -> [f32; 6] {
+fn transform_of(node: &Prim) -> DAffine2 {
     let pair = |input: &str, default: f64| {
         match end(node.attribute(format!("inputs:{input}"))) {
             Some(End::Value(attribute)) => attribute.get::<[f32; 2]>().ok().flatten(),
             _ => None,
         }
-        .map_or([default; 2], |found| found.map(f64::from))
+        .map_or(DVec2::splat(default), |found| DVec2::from(found.map(f64::from)))
     };
-    let ([a, b], [x, y]) = (pair("scale", 1.0), pair("translation", 0.0));
-    let (sin, cos) = constant::<f64>(node, "rotation").unwrap_or(0.0).to_radians().sin_cos();
-    let [m00, m01, m10, m11] = [a * cos, -b * sin, a * sin, b * cos];
-    [m00, -m01, m01 + x, -m10, m11, 1.0 - m11 - y].map(|x| x as f32)
+    let angle = constant::<f64>(node, "rotation").unwrap_or(0.0).to_radians();
+    DAffine2::from_scale_angle_translation(pair("scale", 1.0), angle, pair("translation", 0.0))
 }

@@ -5,11 +5,19 @@ use std::collections::HashMap;
 use glam::{DVec3, Vec2, Vec3, Vec4};
 use openusd::{sdf::Value, usd::Prim, usd::TimeCode};
 
-use super::{kind, material::Slots, scene::value_at, text_of};
+use super::{kind, material::Slots, scene::value_at, shape::unit_mesh, text_of};
 use crate::{
     polygon::Polygons,
     scene::{Loading, mesh::Mesh, report::Fate, report::ImportReport, texture::TextureTarget},
 };
+
+/// Colours of what has no material.
+pub(super) const COLORS: &str = "primvars:displayColor";
+
+/// A colour of a vertex, which is finite.
+fn as_color([r, g, b]: [f32; 3]) -> [f32; 4] {
+    [r, g, b, 1.0].map(|x| if x.is_finite() { x.max(0.0) } else { 1.0 })
+}
 
 /// Values, and which of them each corner has.
 struct Primvar<T> {
@@ -68,7 +76,7 @@ fn ints(prim: &Prim, name: &str, time: TimeCode) -> Option<Vec<i32>> {
 }
 
 /// The path of the material that a prim is bound to, or the nearest of those above it.
-fn bound(prim: &Prim) -> Option<String> {
+pub(super) fn bound(prim: &Prim) -> Option<String> {
     let of_prim = |prim: Prim| {
         let mut names = ["material:binding:full", "material:binding"].into_iter();
         names.find_map(|name| prim.relationship(name).targets().ok()?.into_iter().next())
@@ -77,6 +85,27 @@ fn bound(prim: &Prim) -> Option<String> {
     above
         .find_map(|path| of_prim(prim.stage().prim(path)))
         .map(|path| path.to_string())
+}
+
+/// A shape's mesh in its material, or in its own colour.
+pub(super) fn read_shape(
+    prim: &Prim,
+    shape: &str,
+    time: TimeCode,
+    slots: &mut Slots<'_>,
+    report: &mut ImportReport,
+) -> Mesh {
+    let material = bound(prim);
+    let (slot, _) = slots.slot(material.as_deref(), prim.stage(), report);
+    let mut mesh = unit_mesh(shape, slot);
+    let painted = slots.get(slot);
+    let colors = Primvar::<[f32; 3]>::read(prim, COLORS, time, [0; 3]);
+    let colors = colors.filter(|_| material.is_none() || painted.has_vertex_colors);
+    if let Some(color) = colors.and_then(|colors| colors.values.first().copied()) {
+        painted.color_by_vertices();
+        mesh.colors = vec![as_color(color); mesh.positions.len()];
+    }
+    mesh
 }
 
 /// The triangles of a mesh in its space.
@@ -108,7 +137,7 @@ pub(super) fn read_mesh(
     let normals = Primvar::<[f32; 3]>::read(prim, "primvars:normals", time, all)
         .or_else(|| Primvar::read(prim, "normals", time, all))
         .or_else(|| is_cage.then(|| smooth(&points, &counts, &corners, is_left)));
-    let colors = Primvar::<[f32; 3]>::read(prim, "primvars:displayColor", time, all);
+    let colors = Primvar::<[f32; 3]>::read(prim, COLORS, time, all);
     let mut source = Source {
         is_left,
         points,
@@ -129,7 +158,7 @@ pub(super) fn read_mesh(
         });
         let painted = slots.get(slot);
         let place = painted.texture(TextureTarget::Normal);
-        let has_colors = source.colors.is_some() && material.is_none();
+        let has_colors = source.colors.is_some() && (material.is_none() || painted.has_vertex_colors);
         if has_colors {
             painted.color_by_vertices();
             report.note(Fate::Used, "vertex colours", name);
@@ -287,9 +316,8 @@ impl Source {
             read.second_uvs.push(uv(&self.uvs[1], second));
         }
         if has_colors {
-            let [r, g, b] = triple(&self.colors, color).unwrap_or([1.0; 3]);
             read.colors
-                .push([r, g, b, 1.0].map(|x| if x.is_finite() { x.max(0.0) } else { 1.0 }));
+                .push(as_color(triple(&self.colors, color).unwrap_or([1.0; 3])));
         }
         read.positions.len() as u32 - 1
     }

@@ -1,8 +1,10 @@
 //! USD files, by the openusd crate: text, binary and packages, composed with the files that they refer to.
 
 mod material;
+mod material_x;
 mod mesh;
 mod scene;
+mod shape;
 
 use std::{
     cell::RefCell,
@@ -18,6 +20,7 @@ use openusd::{
     ar::{Asset, ResolvedPath, Resolver},
     sdf::Value,
     usd::{Attribute, Prim, Stage},
+    usda::parser::{ErrorHighlight, Parser},
 };
 
 pub(crate) use self::scene::load;
@@ -28,6 +31,10 @@ use crate::{files::Files, files::Import, panics::contained, scene::Loading};
 const DEPTH_MAX: usize = 256;
 /// Bytes of stack for the crate, which goes down into prims and paths by recursion.
 const STACK: usize = 256 << 20;
+
+/// Layers of MaterialX, and what the crate takes them for.
+const MATERIAL_X: &str = ".mtlx";
+const AS_USD: &str = ".usda";
 
 /// Finds layers and images among the files beside the first, by names that are seen from its folder: `kit/chair.usd`, or
 /// `chair.usdz[textures/wood.png]` in a package.
@@ -115,7 +122,13 @@ impl Resolver for Beside {
     }
 
     fn resolve(&self, name: &str) -> Option<ResolvedPath> {
-        self.bytes(name).ok().map(|_| ResolvedPath::new(name))
+        self.bytes(name).ok()?;
+        // The crate goes by the ending.
+        let is_material_x = name.ends_with(MATERIAL_X);
+        Some(ResolvedPath::new(format!(
+            "{name}{}",
+            if is_material_x { AS_USD } else { "" }
+        )))
     }
 
     fn resolve_for_new_asset(&self, _name: &str) -> Option<ResolvedPath> {
@@ -123,8 +136,17 @@ impl Resolver for Beside {
     }
 
     fn open_asset(&self, path: &ResolvedPath) -> io::Result<Box<dyn Asset>> {
-        let bytes = self.bytes(&path.to_string_lossy())?;
-        Ok(Box::new(Cursor::new(bytes.to_vec())))
+        let name = path.to_string_lossy();
+        let material_x = name.strip_suffix(AS_USD).filter(|name| name.ends_with(MATERIAL_X));
+        let bytes = self.bytes(material_x.unwrap_or(&name))?;
+        let layer = match material_x {
+            Some(_) => material_x::layer(&String::from_utf8_lossy(&bytes))
+                .map_err(io::Error::other)?
+                .into(),
+            None => bytes.to_vec(),
+        };
+        check_depth(&layer)?;
+        Ok(Box::new(Cursor::new(layer)))
     }
 }
 
@@ -151,7 +173,19 @@ fn opened(path: &Path, bytes: Vec<u8>, files: Rc<Files>) -> Result<(Stage, Known
         read: read.clone(),
     };
     let stage = contained(|| Stage::builder().resolver(beside).open(&name)).ok_or("its parts contradict each other")?;
-    stage.map(|stage| (stage, read)).map_err(|error| format!("{error:#}"))
+    let fault = |error| line_of_fault(&read.borrow()[&name]).unwrap_or_else(|| format!("{error:#}"));
+    stage.map_err(fault).map(|stage| (stage, read))
+}
+
+/// What the crate does not take in a text, with the line; `None` in other files.
+fn line_of_fault(bytes: &[u8]) -> Option<String> {
+    let mut parser = Parser::new(std::str::from_utf8(bytes).ok()?);
+    let error = parser.parse().err()?;
+    let ErrorHighlight { line, line_text, .. } = parser.last_error_highlight()?;
+    Some(format!(
+        "line {line} is not understood: {} ({error:#})",
+        line_text.trim()
+    ))
 }
 
 /// Does work on the stage of a file whose contents are given, with the stack that the crate needs. `None` where the crate gives up.

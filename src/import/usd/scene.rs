@@ -9,7 +9,14 @@ use openusd::{
     usd::{Attribute, Prim, SchemaBase, SchemaKind, Stage, TimeCode},
 };
 
-use super::{DEPTH_MAX, Known, deep, kind, material::Slots, mesh::read_mesh, opened, text_of};
+use super::{
+    DEPTH_MAX, Known, deep, kind,
+    material::Slots,
+    mesh::{COLORS, bound, read_mesh, read_shape},
+    opened,
+    shape::shape,
+    text_of,
+};
 use crate::{
     assembly::{Assembly, camera_at, light_at},
     files::Files,
@@ -55,6 +62,8 @@ impl Xformable for Placed<'_> {}
 /// A mesh, or a shape, at a place.
 struct Shown {
     prim: Prim,
+    /// The kind of a shape.
+    shape: Option<String>,
     world_from_mesh: DMat4,
     /// The prim whose instances are one object.
     object: usize,
@@ -119,15 +128,24 @@ impl<'a> Walk<'a> {
             self.report.note(Fate::Missing, format!("a part ({error})"), "");
         }
         let mut slots = Slots::new(self.files, read, self.options);
-        // The parts of a prim's instances are those of one prim.
-        let key = |shown: &Shown| {
-            let shared = shown.prim.prim_in_prototype().ok().flatten();
-            shared.as_ref().unwrap_or(&shown.prim).path().to_string()
+        // The parts of a prim's instances are those of one prim, and shapes that look the same share a mesh.
+        let key = |shown: &Shown| match &shown.shape {
+            Some(shape) => {
+                let color = value_at(&shown.prim.attribute(COLORS), self.time);
+                format!("{shape} {:?} {color:?}", bound(&shown.prim))
+            }
+            None => {
+                let shared = shown.prim.prim_in_prototype().ok().flatten();
+                shared.as_ref().unwrap_or(&shown.prim).path().to_string()
+            }
         };
         let mut assembly = Assembly::new(path, loading, self.shown.iter().map(key));
         for shown in &self.shown {
             let name = shown.prim.path().name().unwrap_or_default();
-            let read = || read_mesh(&shown.prim, self.time, &mut slots, &mut self.report, loading);
+            let read = || match &shown.shape {
+                Some(shape) => read_shape(&shown.prim, shape, self.time, &mut slots, &mut self.report),
+                None => read_mesh(&shown.prim, self.time, &mut slots, &mut self.report, loading),
+            };
             assembly.place(key(shown), (shown.object, name), shown.world_from_mesh, read)?;
         }
         let mut model = assembly.finish(&mut self.report);
@@ -180,10 +198,12 @@ impl<'a> Walk<'a> {
         let local = placed.local_to_parent_transform(self.time);
         // The crate's vectors are rows.
         let world = from_parent * local.map_or(DMat4::IDENTITY, |local| DMat4::from_cols_array(&local.0));
+        let (shape, mesh_from_unit) = shape(prim, self.time).unzip();
         match &*kind(prim) {
-            "Mesh" => self.shown.push(Shown {
+            kind if kind == "Mesh" || shape.is_some() => self.shown.push(Shown {
                 prim: prim.clone(),
-                world_from_mesh: world,
+                shape,
+                world_from_mesh: world * mesh_from_unit.unwrap_or_default(),
                 object: self.prims,
             }),
             "PointInstancer" => return self.instances(prim, world, depth),
@@ -196,12 +216,10 @@ impl<'a> Walk<'a> {
                 .note(Fate::Ignored, "skeletons: what they bend is at rest", &name),
             "GeomSubset" | "Material" | "Shader" | "NodeGraph" => return,
             light if light.ends_with("Light") => self.light(prim, light, &name, world),
-            shape @ ("Sphere" | "Cube" | "Cylinder" | "Cone" | "Capsule" | "Plane" | "BasisCurves" | "Points"
-            | "NurbsPatch" | "NurbsCurves" | "Volume") => {
-                self.report
-                    .note(Fate::Ignored, format!("{shape}, which has no polygons"), &name);
-            }
-            _ => {}
+            "" | "Xform" | "Scope" | "SkelRoot" => {}
+            other => self
+                .report
+                .note(Fate::Ignored, format!("a prim of type {other}"), &name),
         }
         for child in prim.children().unwrap_or_default() {
             self.walk(&child, world, depth + 1);

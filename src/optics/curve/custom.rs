@@ -26,13 +26,13 @@ inlined! {
         let mut step = CUSTOM_INTERVALS / 2;
         while step > 0 {
             let middle = low + c(step as f64);
-            let begin = look_up_number::<0, T>(table, middle);
+            let begin = look_up_number(table, 0, middle);
             low = T::select(xi.less(begin), low, middle);
             step /= 2;
         }
         let width = distance_max::<T>(table) * c(1.0 / CUSTOM_INTERVALS as f64);
-        let (left, right) = (look_up_number::<1, T>(table, low), look_up_number::<2, T>(table, low));
-        let missing = (xi - look_up_number::<0, T>(table, low)).max(T::ZERO);
+        let (left, right) = (look_up_number(table, 1, low), look_up_number(table, 2, low));
+        let missing = (xi - look_up_number(table, 0, low)).max(T::ZERO);
         let root = (left * left + c(2.0) * (right - left) / width * missing).safe_sqrt();
         let step = c(2.0) * missing / (left + root).max(c(1e-12));
         width * low + step.min(width)
@@ -54,7 +54,7 @@ inlined! {
         let position = (distance / distance_max(table) * last).clamp(T::ZERO, last);
         let low = position.floor().min(last - T::ONE);
         let fraction = position - low;
-        look_up_number::<1, T>(table, low) * (T::ONE - fraction) + look_up_number::<2, T>(table, low) * fraction
+        look_up_number(table, 1, low) * (T::ONE - fraction) + look_up_number(table, 2, low) * fraction
     }
 }
 

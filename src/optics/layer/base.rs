@@ -2,13 +2,15 @@
 //!
 //! Seen from within it is behind the interface, and its scattered light is refracted into the solid: a Lambertian lobe with
 //! sines divided by the index of refraction. So it fills the cone from which light gets out again, and none is trapped by
-//! total reflection.
+//! total reflection. There it has besides what the facets of the interface reflect more than once; where nothing but the
+//! interface is there, in all directions.
 
 use super::*;
 use crate::optics::{
     curve::Curve,
     lobe::{Horizon, Lobe, raw_sample},
     rough_diffuse::rough_diffuse,
+    scattering::{scattered_within, scatters_within},
 };
 
 /// Rounding of a squared sine at the edge of the cone.
@@ -22,8 +24,8 @@ impl<T: Real> LayerModel<T> for Base {
     const LAYER: Layer = Layer::Base;
 
     inlined! {
-        fn is_there(material: &Material<T>, _: &Surface<T>) -> T::Mask {
-            material.has_base()
+        fn is_there(material: &Material<T>, surface: &Surface<T>) -> T::Mask {
+            material.has_base() | scatters_within(material, surface)
         }
 
         /// Lambert's lobe, its rare samples below the geometric surface mirrored.
@@ -35,12 +37,21 @@ impl<T: Real> LayerModel<T> for Base {
         }
 
         /// A metal has no layer below.
-        fn albedo(material: &Material<T>, _: &[f32], _: &Surface<T>, left: Vec3<T>) -> LayerAlbedo<T> {
-            let left_by_metal = left * (T::ONE - material.metalness);
-            LayerAlbedo {
-                reflected: material.base_color * left_by_metal * (T::ONE - material.transmission_weight),
-                transmittance: Vec3::ONE,
+        fn albedo(material: &Material<T>, tables: &[f32], surface: &Surface<T>, left: Vec3<T>) -> LayerAlbedo<T> {
+            let (white, one) = (Vec3::ONE, T::ONE);
+            let left_by_metal = left * (one - material.metalness);
+            let mut albedo = LayerAlbedo {
+                reflected: material.base_color * left_by_metal * (one - material.transmission_weight),
+                transmittance: white,
+            };
+            if scatters_within(material, surface).any() {
+                let again = scattered_within(material, surface, &material.shape(tables));
+                albedo.reflected += again * (material.transmission_weight * (one - material.metalness));
+                // The rest is refracted.
+                let share = again * left.map(|left: T| one / left.max(T::from_f64(1e-9)));
+                albedo.transmittance = (white - share).at_least_zero();
             }
+            albedo
         }
 
         fn toward(
@@ -55,7 +66,7 @@ impl<T: Real> LayerModel<T> for Base {
             // From within light fills a cone, for which there is no such model.
             let is_rough = material.diffuse_roughness.above_zero() & !surface.is_within(material);
             if is_rough.any() {
-                let cosines = [surface.wo, wi].map(|direction| surface.frame.normal.dot(direction));
+                let cosines = mapped!([surface.wo, wi], |direction| surface.frame.normal.dot(direction));
                 let between = surface.wo.dot(wi);
                 let factor = rough_diffuse(material.base_color, material.diffuse_roughness, cosines, between);
                 color = Vec3::select(is_rough, color * factor, color);
@@ -96,17 +107,17 @@ impl<T: Real> LayerModel<T> for Base {
             }
         }
 
-        fn refined(material: &Material<T>, surface: &Surface<T>, wi: Vec3<T>, evaluated: [T; 2]) -> [T; 2] {
+        fn refined(material: &Material<T>, surface: &Surface<T>, wi: Vec3<T>, [value, density]: [T; 2]) -> [T; 2] {
             let spread = base_spread(material, surface);
             let is_narrow = spread.less(T::ONE);
             if !is_narrow.any() {
-                return evaluated;
+                return [value, density];
             }
             let folded = wi.reflected_at_plane(surface.normal);
-            let narrow = [wi, folded].map(|wi| narrow_density(surface.frame.normal.dot(wi), spread));
+            let narrow = mapped!([wi, folded], |light| narrow_density(surface.frame.normal.dot(light), spread));
             let is_above = surface.normal.dot(wi).above_zero();
             let narrow = (narrow[0] + narrow[1]).masked(is_above);
-            evaluated.map(|wide| T::select(is_narrow, narrow, wide))
+            mapped!([value, density], |wide| T::select(is_narrow, narrow, wide))
         }
     }
 }
@@ -125,10 +136,10 @@ pub fn base_shape<'a, T: Real>() -> LobeShape<'a, T> {
 }
 
 inlined! {
-    /// The sine of the widest angle to which the base scatters: 1 but from within.
+    /// The sine of the widest angle to which the base scatters: 1 but from within, behind the interface.
     fn base_spread<T: Real>(material: &Material<T>, surface: &Surface<T>) -> T {
-        let is_within = surface.is_within(material);
-        T::select(is_within, material.ior_ahead(is_within), T::ONE)
+        let is_behind = surface.is_within(material) & material.has_base();
+        T::select(is_behind, material.ior_ahead(is_behind), T::ONE)
     }
 
     /// The density of Lambert's lobe with its sines multiplied by `spread`, at a cosine.

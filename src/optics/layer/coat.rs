@@ -10,7 +10,7 @@
 
 use super::*;
 use crate::optics::{
-    albedo::{albedo_lookup, azimuth_place, rough_albedo_lookup},
+    albedo::{albedo_number, azimuth_place, rough_albedo_number},
     coat_medium::{INNER_MAX, color_over, way_length},
     curve::Curve,
     frame::{frame_from_normal, frame_from_tangent},
@@ -101,10 +101,9 @@ inlined! {
         } else if material.coat_anisotropy.differs(T::ZERO).any() {
             azimuth_place(material.coat_anisotropy, &coat_frame(material, surface), surface.wo)
         } else {
-            return albedo_lookup(tables, material.coat_table, cosine)[0];
+            return albedo_number(tables, material.coat_table, 0, cosine);
         };
-        let [albedo, ..] = rough_albedo_lookup(tables, material.coat_table, cosine, row);
-        albedo
+        rough_albedo_number(tables, material.coat_table, 0, [cosine, row])
     }
 
     fn coat_frame<T: Real>(material: &Material<T>, surface: &Surface<T>) -> Frame<T> {

@@ -64,7 +64,8 @@ pub fn layer_evaluate<T: Real, L: LayerModel<T>>(
 ) -> [T; 2] {
     let lobe = L::lobe(material, tables, surface);
     let is_mirror = is_mirror(&lobe.shape);
-    lobe_of::<T, L>(material, surface, &lobe, wi).map(|x| T::select(is_mirror, T::ZERO, x))
+    let [value, density] = lobe_of::<T, L>(material, surface, &lobe, wi);
+    mapped!([value, density], |x| T::select(is_mirror, T::ZERO, x))
 }
 
 /// Lanes where every sampled direction of a material counts as a mirror's, seen from outside.

@@ -98,7 +98,7 @@ impl<T: Real> LayerModel<T> for Fuzz {
             let frame = fuzz_frame(material, surface);
             let matrix = fuzz_matrix(material, frame.normal.dot(surface.wo));
             let folded = wi.reflected_at_plane(surface.normal);
-            let [there, folded] = [wi, folded].map(|wi| fuzz_density(matrix, local_from_world(&frame, wi)));
+            let [there, folded] = mapped!([wi, folded], |light| fuzz_density(matrix, local_from_world(&frame, light)));
             let is_above = surface.normal.dot(wi).above_zero();
             let density = (there + folded).masked(is_above);
             [density; 2]

@@ -2,7 +2,7 @@
 
 use super::evaluate::lobe_of;
 use super::*;
-use crate::optics::{lobe::is_mirror, lobe::lobe_sample, warp::split};
+use crate::optics::{lobe::is_mirror, lobe::lobe_sample_density, warp::split};
 
 /// A direction drawn from a material.
 #[derive(Clone, Copy, Debug)]
@@ -85,7 +85,12 @@ pub fn material_sample<T: Real>(
                 xi[0] = T::select(is_apart, xi[0], rest);
                 if (left & (is_by_facet | takes)).any() {
                     let lobe = L::lobe(material, tables, surface);
-                    let drawn = lobe_sample(&lobe.shape, &lobe.frame, surface.normal, surface.wo, xi);
+                    let is_mirror = is_mirror(&lobe.shape);
+                    let needs_density = needs_density && !is_mirror.all();
+                    // Where a facet decides, few lanes may take the direction: its density then waits for that.
+                    let is_together = needs_density && !is_by_facet.any();
+                    let (frame, normal, wo) = (&lobe.frame, surface.normal, surface.wo);
+                    let (drawn, of_lobe) = lobe_sample_density(&lobe.shape, frame, normal, wo, xi, is_together);
                     let drawn = L::refined_sample(material, surface, xi, drawn);
                     let toward = L::toward(material, &layers, surface, &lobe.shape, drawn.wi);
                     if is_by_facet.any() {
@@ -98,10 +103,12 @@ pub fn material_sample<T: Real>(
                     takes = left & takes;
                     if takes.any() {
                         let share = &layers[LAYER];
-                        let is_mirror = is_mirror(&lobe.shape);
                         let mut density = T::ZERO;
-                        if needs_density && !is_mirror.all() {
-                            let [_, of_lobe] = lobe_of::<T, L>(material, surface, &lobe, drawn.wi);
+                        if needs_density {
+                            let [_, of_lobe] = match is_together {
+                                true => L::refined(material, surface, drawn.wi, [T::ZERO, of_lobe]),
+                                false => lobe_of::<T, L>(material, surface, &lobe, drawn.wi),
+                            };
                             let density_there = share.reached * toward.probability * of_lobe;
                             density = T::select(is_mirror, T::ZERO, density_there);
                         }

@@ -36,7 +36,8 @@ impl<T> IndexMut<Layer> for Layers<T> {
 impl<T: Real> Layers<T> {
     /// The probability of sampling each layer, in their order.
     pub fn probabilities(&self) -> [T; Layer::ALL.len()] {
-        self.0.map(|share| share.reached * share.probability)
+        mapped!([0, 1, 2, 3, 4], |layer| self.0[layer].reached
+            * self.0[layer].probability)
     }
 }
 

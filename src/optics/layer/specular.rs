@@ -4,7 +4,10 @@ use super::facet::{left_by_facet, mirrored_share, shares_facets};
 use super::transmission::transmission_estimate;
 use super::*;
 use crate::optics::{
-    albedo::{ROUGH_ALBEDO_LENGTH, albedo_lookup, albedo_place, rough_albedo, rough_albedo_lookup, table_row},
+    albedo::{
+        ROUGH_ALBEDO_LENGTH, albedo_lookup, albedo_place, rough_albedo, rough_albedo_lookup, rough_albedo_number,
+        table_row,
+    },
     fresnel::{Fresnel, fresnel, fresnel_f0, half_vector_cosine},
     refraction::refracted_square,
     scattering::scattered_again,
@@ -166,8 +169,8 @@ inlined! {
     /// reflectances head-on are.
     fn dielectric_under_coat<T: Real>(material: &Material<T>, tables: &[f32], [place, row]: [T; 2], bare: T) -> T {
         let table = material.albedo_table + ROUGH_ALBEDO_LENGTH as u32;
-        let [coated, ..] = rough_albedo_lookup(tables, table, place, row);
-        let [zero, one] = [T::ZERO, T::ONE].map(|weight| fresnel_f0(material.ior_under_coat(weight)));
+        let coated = rough_albedo_number(tables, table, 0, [place, row]);
+        let [zero, one] = mapped!([T::ZERO, T::ONE], |weight| fresnel_f0(material.ior_under_coat(weight)));
         let there = fresnel_f0(material.reflecting_ior);
         let share = (there - zero) / T::select(one.differs(zero), one - zero, T::ONE);
         bare + (coated - bare) * share

@@ -4,7 +4,7 @@
 use super::facet::{bends, left_by_facet, mirrored_share, shares_facets};
 use super::*;
 use crate::optics::{
-    fresnel::fresnel, lobe::refracts_at_facets, refraction::refracting_cosines, scattering::interface_gain,
+    fresnel::fresnel, lobe::refracts_at_facets, refraction::refracting_cosines, scattering::interface_kept,
 };
 
 /// The refracting lobe.
@@ -60,7 +60,7 @@ impl<T: Real> LayerModel<T> for Transmission {
                 let share = T::ONE - mirrored_share(reflected, refracted);
                 toward.probability = T::select(is_shared, of_facets * share, toward.probability);
             }
-            let by_facet = toward.color * interface_gain(material, surface, shape, false);
+            let by_facet = toward.color * interface_kept(material, surface, shape, false).map(|kept| T::ONE / kept);
             toward.color = Vec3::select(bends(material), by_facet, straight);
             toward
         }

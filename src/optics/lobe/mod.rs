@@ -425,6 +425,18 @@ pub fn lobe_sample<T: Real>(
     wo: Vec3<T>,
     xi: [T; 3],
 ) -> LobeSample<T> {
+    lobe_sample_density(shape, frame, surface_normal, wo, xi, false).0
+}
+
+/// [`lobe_sample`] with the density of [`lobe_evaluate`] for what it draws, if that is needed, else 0.
+pub fn lobe_sample_density<T: Real>(
+    shape: &LobeShape<'_, T>,
+    frame: &Frame<T>,
+    surface_normal: Vec3<T>,
+    wo: Vec3<T>,
+    xi: [T; 3],
+    needs_density: bool,
+) -> (LobeSample<T>, T) {
     out_of_line!(T, {
         let view = lobe_view(shape, frame, surface_normal, wo);
         let seen = view.seen_lobe(shape);
@@ -446,7 +458,7 @@ pub fn lobe_sample<T: Real>(
             }
         };
         let below = view.normal.dot(raw).below_zero();
-        match shape.horizon {
+        let drawn = match shape.horizon {
             // A lost sample keeps its direction, which identifies its facet.
             Horizon::Mirror => LobeSample {
                 wi: Vec3::select(below & weight.above_zero(), raw.reflected_at_plane(view.normal), raw),
@@ -457,7 +469,12 @@ pub fn lobe_sample<T: Real>(
                 weight: T::select(below, T::ZERO, weight),
             },
             Horizon::None => LobeSample { wi: raw, weight },
+        };
+        let mut density = T::ZERO;
+        if needs_density {
+            [_, density] = kept_evaluate(shape, &view, drawn.wi, false);
         }
+        (drawn, density)
     })
 }
 
@@ -472,29 +489,40 @@ pub fn lobe_evaluate<T: Real>(
 ) -> [T; 2] {
     out_of_line!(T, {
         let view = lobe_view(shape, frame, surface_normal, wo);
-        if shape.horizon == Horizon::None {
-            return raw_evaluate(shape, &view, wi);
-        }
-        let visible = view.normal.dot(wi).above_zero();
-        let [mut value, mut density] = raw_evaluate(shape, &view, wi);
-        if shape.horizon == Horizon::Mirror {
-            let [folded, folded_density] = raw_evaluate(shape, &view, wi.reflected_at_plane(view.normal));
-            value += folded;
-            density += folded_density;
-        }
-        [value.masked(visible), density.masked(visible)]
+        kept_evaluate(shape, &view, wi, true)
     })
+}
+
+/// (evaluate, density) of a view; evaluate is 0 if it is not needed.
+#[inline(always)]
+fn kept_evaluate<T: Real>(shape: &LobeShape<'_, T>, view: &LobeView<T>, wi: Vec3<T>, needs_value: bool) -> [T; 2] {
+    // One that comes from below is added by the mirror policy. A loop, so that the code is there once.
+    let directions = [wi, wi.reflected_at_plane(view.normal)];
+    let count = if shape.horizon == Horizon::Mirror { 2 } else { 1 };
+    let mut sums = [T::ZERO; 2];
+    for direction in &directions[..count] {
+        let [value, density] = raw_evaluate(shape, view, *direction, needs_value);
+        sums = [sums[0] + value, sums[1] + density];
+    }
+    if shape.horizon == Horizon::None {
+        return sums;
+    }
+    let visible = view.normal.dot(wi).above_zero();
+    mapped!([sums[0], sums[1]], |sum| sum.masked(visible))
 }
 
 /// (evaluate, density) before the horizon policy.
 #[inline(always)]
-fn raw_evaluate<T: Real>(shape: &LobeShape<'_, T>, view: &LobeView<T>, wi: Vec3<T>) -> [T; 2] {
+fn raw_evaluate<T: Real>(shape: &LobeShape<'_, T>, view: &LobeView<T>, wi: Vec3<T>, needs_value: bool) -> [T; 2] {
     let LobeView { frame, wo, .. } = view;
     if refracts_at_facets(shape) {
         let along = refracting_normal(*wo, wi, shape.eta);
         let mirrored = facet_mirror(frame, *wo, wi, shape.eta);
         let factor = facet_density_factor(frame, *wo, wi, shape.eta, along);
         let density = (factor * raw_density(shape, frame, *wo, mirrored)).masked(factor.above_zero());
+        if !needs_value {
+            return [T::ZERO, density];
+        }
         return [density * facet_weight(shape, frame, *wo, wi, mirrored), density];
     }
     let is_above = frame.normal.dot(wi).above_zero() | T::Mask::splat(!shape.lobe.is_hemispherical());
@@ -502,7 +530,9 @@ fn raw_evaluate<T: Real>(shape: &LobeShape<'_, T>, view: &LobeView<T>, wi: Vec3<
         return [T::ZERO, T::ZERO];
     }
     let seen = view.seen_lobe(shape);
-    let density = raw_density(&seen, frame, *wo, wi);
-    let value = density * raw_weight(&seen, frame, *wo, wi);
-    [value.masked(is_above), density.masked(is_above)]
+    let density = raw_density(&seen, frame, *wo, wi).masked(is_above);
+    if !needs_value {
+        return [T::ZERO, density];
+    }
+    [(density * raw_weight(&seen, frame, *wo, wi)).masked(is_above), density]
 }

@@ -6,7 +6,9 @@ mod aces2;
 mod grade;
 mod lut;
 
+use crate::instructions::level;
 use crate::named::named;
+use crate::optics::lanes::{InLanes, in_lanes};
 use crate::optics::prelude::*;
 
 pub use aces2::tone_aces2;
@@ -28,29 +30,71 @@ named! {
 
 /// Tone maps exposed scene-referred linear Rec. 709 to display-referred linear Rec. 709 in [0, 1]. Negative values and NaN
 /// count as 0; values are clamped to [`SCENE_MAX`].
-pub fn tone_map<T: Scalar>(curve: ToneCurve, rgb_linear: Vec3<T>) -> Vec3<T> {
-    let scene = rgb_linear.map(|x| x.clamp(T::ZERO, T::from_f64(SCENE_MAX)));
+#[inline(always)]
+pub fn tone_map<T: Real>(curve: ToneCurve, rgb_linear: Vec3<T>) -> Vec3<T> {
+    let scene = rgb_linear.map(
+        #[inline(always)]
+        |x| x.clamp(T::ZERO, T::from_f64(SCENE_MAX)),
+    );
     let display = match curve {
         ToneCurve::Agx => tone_agx(scene),
         ToneCurve::AgxPunchy => tone_agx_punchy(scene),
         ToneCurve::Aces => tone_aces(scene),
         ToneCurve::PbrNeutral => tone_pbr_neutral(scene),
         ToneCurve::None => tone_none(scene),
-        ToneCurve::Aces2 => tone_aces2(scene),
+        ToneCurve::Aces2 => Vec3::from_lanes(|lane| tone_aces2(scene.lane(lane))),
     };
-    display.map(|x| x.clamp(T::ZERO, T::ONE))
+    display.map(
+        #[inline(always)]
+        |x| x.clamp(T::ZERO, T::ONE),
+    )
+}
+
+/// sRGB codes in [0, 1] of exposed scene-referred colours, tone mapped in lanes.
+pub fn display_codes(curve: ToneCurve, colors: &[Vec3<f32>]) -> Vec<Vec3<f32>> {
+    in_lanes(level(), Codes { curve, colors })
+}
+
+struct Codes<'a> {
+    curve: ToneCurve,
+    colors: &'a [Vec3<f32>],
+}
+
+impl InLanes for Codes<'_> {
+    type Output = Vec<Vec3<f32>>;
+
+    fn run<T: Single>(self) -> Self::Output {
+        let Self { curve, colors } = self;
+        let mut codes = Vec::with_capacity(colors.len());
+        vectorized!(T, {
+            for group in colors.chunks(T::LANES) {
+                let scene = Vec3::<T>::from_lanes(|lane| group[lane.min(group.len() - 1)]);
+                let shown = srgb_from_linear(tone_map(curve, scene)).to_each();
+                codes.extend((0..group.len()).map(|lane| shown[lane]));
+            }
+        });
+        codes
+    }
 }
 
 /// Largest scene-referred value: the largest half float.
 pub const SCENE_MAX: f64 = 65504.0;
 
 /// [`tone_agx`] with the look that its author calls punchy.
-pub fn tone_agx_punchy<T: Scalar>(scene: Vec3<T>) -> Vec3<T> {
-    agx(scene, |encoded| {
-        let powered = encoded.map(|x| x.max(T::ZERO).powf(T::from_f64(PUNCHY_POWER)));
-        let luminance = powered.dot(Vec3::from_f64(LUMINANCE));
-        Vec3::splat(luminance).mix(powered, T::from_f64(PUNCHY_SATURATION))
-    })
+#[inline(always)]
+pub fn tone_agx_punchy<T: Real>(scene: Vec3<T>) -> Vec3<T> {
+    agx(
+        scene,
+        #[inline(always)]
+        |encoded| {
+            let powered = encoded.map(
+                #[inline(always)]
+                |x| x.max(T::ZERO).powf(T::from_f64(PUNCHY_POWER)),
+            );
+            let luminance = powered.dot(Vec3::from_f64(LUMINANCE));
+            Vec3::splat(luminance).mix(powered, T::from_f64(PUNCHY_SATURATION))
+        },
+    )
 }
 
 /// The power of AgX's punchy look, on encoded values.
@@ -63,20 +107,28 @@ pub const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];
 /// AgX (Sobotka 2022) in the form of Filament and three.js: its inset in Rec. 2020, here one matrix with the change of
 /// primaries; Wrensch's polynomial fit of the sigmoid over 16.5 stops around middle grey ("Minimal AgX implementation",
 /// 2023); the outset; display gamma 2.2.
-pub fn tone_agx<T: Scalar>(scene: Vec3<T>) -> Vec3<T> {
+#[inline(always)]
+pub fn tone_agx<T: Real>(scene: Vec3<T>) -> Vec3<T> {
     agx(scene, |encoded| encoded)
 }
 
 /// [`tone_agx`] with a look: applied after the sigmoid, before the outset.
-fn agx<T: Scalar>(scene: Vec3<T>, look: impl Fn(Vec3<T>) -> Vec3<T>) -> Vec3<T> {
+#[inline(always)]
+fn agx<T: Real>(scene: Vec3<T>, look: impl Fn(Vec3<T>) -> Vec3<T>) -> Vec3<T> {
     let c = T::from_f64;
     let inset = transform(AGX_INSET_FROM_REC709, scene);
-    let log = inset.map(|x| {
-        let stops = x.max(c(1e-10)).ln() * c(std::f64::consts::LOG2_E);
-        ((stops - c(AGX_STOPS_MIN)) / c(AGX_STOPS_MAX - AGX_STOPS_MIN)).clamp(T::ZERO, T::ONE)
-    });
-    let encoded = transform(AGX_OUTSET, look(log.map(agx_contrast)));
-    let linear = encoded.map(|x| x.max(c(1e-10)).powf(c(2.2)));
+    let shaped = inset.map(
+        #[inline(always)]
+        |x| {
+            let stops = x.max(c(1e-10)).ln() * c(std::f64::consts::LOG2_E);
+            agx_contrast(((stops - c(AGX_STOPS_MIN)) / c(AGX_STOPS_MAX - AGX_STOPS_MIN)).clamp(T::ZERO, T::ONE))
+        },
+    );
+    let encoded = transform(AGX_OUTSET, look(shaped));
+    let linear = encoded.map(
+        #[inline(always)]
+        |x| x.max(c(1e-10)).powf(c(2.2)),
+    );
     transform(REC709_FROM_REC2020, linear)
 }
 
@@ -86,7 +138,8 @@ pub const AGX_STOPS_MIN: f64 = -12.47393;
 pub const AGX_STOPS_MAX: f64 = 4.026069;
 
 /// AgX's sigmoid on [0, 1].
-fn agx_contrast<T: Scalar>(x: T) -> T {
+#[inline(always)]
+fn agx_contrast<T: Real>(x: T) -> T {
     let c = T::from_f64;
     let high = c(31.96) + x * (c(-40.14) + x * c(15.5));
     c(-0.00232) + x * (c(0.1191) + x * (c(0.4298) + x * (c(-6.868) + x * high)))
@@ -94,18 +147,23 @@ fn agx_contrast<T: Scalar>(x: T) -> T {
 
 /// Hill's fit of the ACES 1.0 reference rendering and output transforms for sRGB displays (BakingLab, 2016), without
 /// the exposure of 1/0.6 that some programs put before it.
-pub fn tone_aces<T: Scalar>(scene: Vec3<T>) -> Vec3<T> {
+#[inline(always)]
+pub fn tone_aces<T: Real>(scene: Vec3<T>) -> Vec3<T> {
     let c = T::from_f64;
-    let fitted = transform(ACES_INPUT, scene).map(|x| {
-        let a = x * (x + c(0.0245786)) - c(0.000090537);
-        let b = x * (c(0.983729) * x + c(0.432951)) + c(0.238081);
-        a / b
-    });
+    let fitted = transform(ACES_INPUT, scene).map(
+        #[inline(always)]
+        |x| {
+            let a = x * (x + c(0.0245786)) - c(0.000090537);
+            let b = x * (c(0.983729) * x + c(0.432951)) + c(0.238081);
+            a / b
+        },
+    );
     transform(ACES_OUTPUT, fitted)
 }
 
 /// The Khronos PBR Neutral tone mapper (Khronos 3D Commerce, 2024), as specified.
-pub fn tone_pbr_neutral<T: Scalar>(scene: Vec3<T>) -> Vec3<T> {
+#[inline(always)]
+pub fn tone_pbr_neutral<T: Real>(scene: Vec3<T>) -> Vec3<T> {
     let c = T::from_f64;
     let darkest = scene.x.min(scene.y).min(scene.z);
     // Subtracts the reflectance of 0.04 that every dielectric adds to its base colour.
@@ -124,17 +182,22 @@ pub fn tone_pbr_neutral<T: Scalar>(scene: Vec3<T>) -> Vec3<T> {
 pub const NEUTRAL_START: f64 = 0.8 - 0.04;
 
 /// Linear, clamped by [`tone_map`].
-pub fn tone_none<T: Scalar>(scene: Vec3<T>) -> Vec3<T> {
+#[inline(always)]
+pub fn tone_none<T: Real>(scene: Vec3<T>) -> Vec3<T> {
     scene
 }
 
 /// sRGB-encoded from linear, both in [0, 1] (IEC 61966-2-1).
-pub fn srgb_from_linear<T: Scalar>(linear: Vec3<T>) -> Vec3<T> {
+#[inline(always)]
+pub fn srgb_from_linear<T: Real>(linear: Vec3<T>) -> Vec3<T> {
     let c = T::from_f64;
-    linear.map(|x| {
-        let bright = c(1.055) * x.max(c(0.0031308)).powf(c(1.0 / 2.4)) - c(0.055);
-        T::select(c(0.0031308).less(x), bright, c(12.92) * x)
-    })
+    linear.map(
+        #[inline(always)]
+        |x| {
+            let bright = c(1.055) * x.max(c(0.0031308)).powf(c(1.0 / 2.4)) - c(0.055);
+            T::select(c(0.0031308).less(x), bright, c(12.92) * x)
+        },
+    )
 }
 
 /// Linear from sRGB-encoded, both in [0, 1] (IEC 61966-2-1).
@@ -147,8 +210,9 @@ pub fn linear_from_srgb<T: Scalar>(srgb: Vec3<T>) -> Vec3<T> {
 }
 
 /// Rows of a matrix applied to a colour.
-fn transform<T: Scalar>(rows: [[f64; 3]; 3], color: Vec3<T>) -> Vec3<T> {
-    let [x, y, z] = rows.map(|row| Vec3::from_f64(row).dot(color));
+#[inline(always)]
+fn transform<T: Real>(rows: [[f64; 3]; 3], color: Vec3<T>) -> Vec3<T> {
+    let [x, y, z] = mapped!([rows[0], rows[1], rows[2]], |row| Vec3::from_f64(row).dot(color));
     vec3(x, y, z)
 }
 

@@ -21,22 +21,30 @@ const NEEDED: [&str; 4] = [
     "libOpenImageDenoise_device_cpu.so.",
     "libOpenImageDenoise.so.2",
 ];
-/// Programs that install Python packages, the likeliest first.
-const INSTALLERS: [&[&str]; 3] = [&["python3", "-m", "pip"], &["pip3"], &["uv", "pip"]];
+/// Programs that install Python packages, with their first arguments, the likeliest first.
+pub type Installers<'a> = &'a [&'a [&'a str]];
+const INSTALLERS: Installers<'_> = &[&["python3", "-m", "pip"], &["pip3"], &["uv", "pip"]];
 
 /// Whether the denoiser can be fetched on this system.
 pub fn can_fetch() -> bool {
     cfg!(target_os = "linux") && data_folder().is_some()
 }
 
-/// Downloads the denoiser into the folder where the program looks for it, and has it looked for again. `goes_on` hears the
-/// share that is there, and ends the download by false.
+/// Downloads the denoiser into the folder where the program looks for it, and has it looked for again; see [`fetch_into`].
 pub fn fetch(goes_on: &dyn Fn(f32) -> bool) -> Result<(), String> {
     let folder = data_folder().ok_or("there is no folder for it: set HOME")?;
-    std::fs::create_dir_all(&folder).map_err(failed(&folder))?;
+    fetch_into(&folder, INSTALLERS, goes_on)?;
+    Library::look_again();
+    Ok(())
+}
+
+/// Downloads the denoiser into a folder by the first of the installers that is there. `goes_on` hears the share that is
+/// there, which never falls, and ends the download by false.
+pub fn fetch_into(folder: &Path, installers: Installers<'_>, goes_on: &dyn Fn(f32) -> bool) -> Result<(), String> {
+    std::fs::create_dir_all(folder).map_err(failed(folder))?;
     // Beside where it goes to: files are moved within one file system.
-    let taken = tempfile::tempdir_in(&folder).map_err(failed(&folder))?;
-    install(taken.path(), goes_on)?;
+    let taken = tempfile::tempdir_in(folder).map_err(failed(folder))?;
+    install(taken.path(), installers, goes_on)?;
     let there = taken.path().join(IN_PACKAGE);
     // All or none.
     let found: Vec<PathBuf> = NEEDED
@@ -50,7 +58,6 @@ pub fn fetch(goes_on: &dyn Fn(f32) -> bool) -> Result<(), String> {
         let to = folder.join(file.file_name().unwrap_or_default());
         std::fs::rename(&file, &to).map_err(failed(&to))?;
     }
-    Library::look_again();
     Ok(())
 }
 
@@ -69,9 +76,10 @@ fn failed(path: &Path) -> impl FnOnce(io::Error) -> String {
     move |error| format!("{}: {error}", path.display())
 }
 
-fn install(target: &Path, goes_on: &dyn Fn(f32) -> bool) -> Result<(), String> {
+fn install(target: &Path, installers: Installers<'_>, goes_on: &dyn Fn(f32) -> bool) -> Result<(), String> {
     let failed = |why: &str| Err(format!("the download of {PACKAGE} failed: {why}"));
-    for installer in INSTALLERS {
+    let mut share = 0.0_f32;
+    for installer in installers {
         let Some((program, arguments)) = installer.split_first() else {
             continue;
         };
@@ -87,7 +95,9 @@ fn install(target: &Path, goes_on: &dyn Fn(f32) -> bool) -> Result<(), String> {
             .stderr(Stdio::piped());
         let ended = command.spawn().and_then(|mut child| {
             while child.try_wait()?.is_none() {
-                if !goes_on((size_of(target) as f32 / DOWNLOAD_BYTES).min(0.99)) {
+                // What was downloaded is deleted once it is unpacked.
+                share = share.max(size_of(target) as f32 / DOWNLOAD_BYTES).min(0.99);
+                if !goes_on(share) {
                     child.kill()?;
                 }
                 std::thread::sleep(LOOK);
@@ -98,7 +108,7 @@ fn install(target: &Path, goes_on: &dyn Fn(f32) -> bool) -> Result<(), String> {
             Err(error) if error.kind() == io::ErrorKind::NotFound => {}
             Err(error) => return failed(&error.to_string()),
             Ok(output) if output.status.success() => return Ok(()),
-            Ok(_) if !goes_on(0.0) => return Err("the download was stopped".to_owned()),
+            Ok(_) if !goes_on(share) => return Err("the download was stopped".to_owned()),
             Ok(output) => {
                 let said = String::from_utf8_lossy(&output.stderr).into_owned();
                 // A Python without pip: another installer may be there.

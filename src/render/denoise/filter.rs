@@ -20,8 +20,9 @@ pub const QUALITY_FAST: c_int = 4;
 pub const QUALITY_HIGH: c_int = 6;
 /// `OIDN_ERROR_CANCELLED`.
 const CANCELLED: c_int = 6;
-/// Memory limit of the library in MB; it cuts larger images into tiles.
-const MEMORY_MB: c_int = 1500;
+/// Memory limit of the library in MB; it cuts larger images into tiles, which give the same bits and take longer where they
+/// overlap.
+const MEMORY_MB: c_int = 600;
 /// Pixels of mirrored padding on each side. Without it, the library tints the border: in the corners of a uniform image by
 /// up to 80 %.
 const BORDER: usize = 16;

@@ -128,17 +128,19 @@ impl NoisyHalf {
             replacement
         });
         let sources: Vec<usize> = sources.collect();
-        let of_pixel = |pixel: &usize| {
+        let color = |pixel: &usize| {
             let half = film.pixels[*pixel][number];
-            let [albedo, normal] = match film.guides.get(*pixel) {
-                Some(guides) => guides[number].means(guide_samples(*pixel)),
-                None => Default::default(),
-            };
-            let color = half.color.map(|sum| (sum / half.samples).max(0.0) as f32);
-            (color, (albedo, normal))
+            half.color.map(|sum| (sum / half.samples).max(0.0) as f32)
         };
-        let (color, (albedo, normal)) = parallel::map_each(&sources, of_pixel).into_iter().unzip();
-        Some(Self { color, albedo, normal })
+        let guides = |pixel: usize| match film.guides.get(pixel) {
+            Some(guides) => guides[number].means(guide_samples(pixel)),
+            None => Default::default(),
+        };
+        Some(Self {
+            color: parallel::map_each(&sources, color),
+            albedo: parallel::map_each(&sources, |pixel| guides(*pixel)[0]),
+            normal: parallel::map_each(&sources, |pixel| guides(*pixel)[1]),
+        })
     }
 }
 

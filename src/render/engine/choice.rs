@@ -4,8 +4,7 @@ use std::sync::OnceLock;
 
 use super::{Engine, EngineChoice, EngineInfo, cpu, gpu};
 use crate::{
-    gpu::{AdapterKind, GpuAdapter, GpuDevice, GpuError, Traversal, scatter::Scatterer},
-    job::scatter::{ScatterCloud, ScatterRequest},
+    gpu::{AdapterKind, GpuAdapter, GpuDevice, GpuError, Traversal},
     named::named,
     render::denoise::DenoiseDevice,
 };
@@ -96,7 +95,7 @@ fn traversal(adapter: &GpuAdapter) -> (Traversal, &'static str) {
 }
 
 /// The device for single functions; `None` for the CPU, which `auto` uses without a hardware GPU.
-pub fn device_for_functions(choice: EngineChoice) -> Result<Option<GpuDevice>, GpuError> {
+pub(super) fn device_for_functions(choice: EngineChoice) -> Result<Option<GpuDevice>, GpuError> {
     let open = |kind| {
         let adapter = GpuAdapter::find(kind)?;
         adapter.open(traversal(&adapter).0)
@@ -105,29 +104,5 @@ pub fn device_for_functions(choice: EngineChoice) -> Result<Option<GpuDevice>, G
         EngineChoice::Cpu => Ok(None),
         EngineChoice::Gpu => open(AdapterKind::Any).map(Some),
         EngineChoice::Auto => Ok(open(AdapterKind::Hardware).ok()),
-    }
-}
-
-/// Draws samples of lobes with the function that the chosen engine renders with.
-pub enum Sampler {
-    Cpu,
-    Gpu(Box<Scatterer>),
-}
-
-impl Sampler {
-    /// Opens the requested engine; `auto` uses the CPU without a hardware GPU.
-    pub fn open(choice: EngineChoice) -> Result<Self, GpuError> {
-        Ok(match device_for_functions(choice)? {
-            Some(device) => Self::Gpu(Box::new(Scatterer::new(device)?)),
-            None => Self::Cpu,
-        })
-    }
-
-    /// Draws the samples.
-    pub fn draw(&self, request: &ScatterRequest) -> Result<ScatterCloud, GpuError> {
-        match self {
-            Self::Cpu => Ok(crate::cpu::scatter::scatter(request)),
-            Self::Gpu(scatterer) => scatterer.draw(request),
-        }
     }
 }

@@ -1,6 +1,7 @@
 //! The two engines behind one interface.
 
 pub mod choice;
+mod prober;
 
 use std::{fmt, sync::Arc, time::Duration};
 
@@ -11,7 +12,8 @@ use crate::{
     named::named,
 };
 
-pub use choice::{MachineOptions, RayQueries, Sampler, device_for_functions};
+pub use choice::{MachineOptions, RayQueries};
+pub use prober::Prober;
 
 named! {
     /// The engine that a user asks for.

@@ -14,7 +14,7 @@ use std::{
     sync::{
         Arc, Mutex,
         atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering::Relaxed},
-        mpsc::{Sender, channel},
+        mpsc::{Receiver, Sender, channel},
     },
     thread::JoinHandle,
     time::{Duration, Instant},
@@ -258,6 +258,13 @@ impl Worker {
     /// Makes the image's layers as soon as it has samples at full resolution; an [`Event`] returns them with the file name.
     pub fn make_layers(&self, path: PathBuf) {
         self.order(|state| state.requested_layers.push(path));
+    }
+
+    /// Carries later orders out once a channel is closed, or after 2 s.
+    pub fn wait_for(&self, done: Receiver<()>) {
+        self.order(move |_| {
+            let _ = done.recv_timeout(SHUTDOWN_TIMEOUT);
+        });
     }
 
     /// Reads the scene's files again; an [`Event`] reports the result. If they cannot be read, the current render continues.

@@ -248,6 +248,11 @@ fn cell_row_luminances(map: &Map, cell_row: u32, cells_width: u32, cells_height:
         let band = band_solid_angle(f64::from(row), f64::from(row + 1), f64::from(map.height));
         let factor = row_share * band / f64::from(map.width);
         let luminances = cell_luminances(map, row);
+        // As most maps are: a cell for each texel.
+        if (cells_width, cells_height) == (map.width, map.height) {
+            weights = luminances.iter().map(|luminance| factor * luminance).collect();
+            break;
+        }
         for (cell, weight) in weights.iter_mut().enumerate() {
             for (column, share) in overlaps(cell as u32, cells_width, map.width) {
                 *weight += factor * share * luminances[column as usize];

@@ -47,7 +47,7 @@ pub const SOURCE_MAX_HEIGHT: u32 = 32768;
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum EnvironmentSource {
-    /// Large warm soft boxes in a warm room.
+    /// Large soft boxes of daylight in a room of wood.
     #[default]
     Product,
     /// Soft boxes in a dark room.
@@ -106,7 +106,7 @@ macro_rules! built_in {
 
 #[rustfmt::skip]
 built_in! {
-    Product "product" "Product" "Large warm soft boxes in a warm room." product;
+    Product "product" "Product" "Large soft boxes and a grey backdrop in a room of wood: white is white, and gold is gold." product;
     Studio "studio" "Studio" "Soft boxes in a dark room." studio;
     Portrait "portrait" "Portrait" "One large warm lamp near the camera, and reflectors." portrait;
     Rim "rim" "Rim" "Two narrow lamps behind the object, warm and cool, in the dark." rim;

@@ -14,6 +14,7 @@ pub mod report;
 mod snippet;
 pub mod surface;
 mod table;
+mod textures;
 mod usd;
 mod xml;
 

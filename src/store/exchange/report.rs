@@ -29,9 +29,6 @@ impl Outcome {
     }
 }
 
-/// The textures that a user put on a material.
-pub const OWN_TEXTURES: &str = "textures of your own";
-
 /// All parts of a material.
 pub const EVERYTHING: &str = "everything";
 

@@ -1,6 +1,6 @@
 //! A material as other programs know it: microfacets with GGX over a diffuse or refracting base, under a coat.
 
-use super::report::{Entry, OWN_TEXTURES, Residual};
+use super::report::{Entry, Residual};
 use crate::{
     document::{CoatLobe, ImportLobe, MaterialSettings, PARAMETERS, TextureUse, import::ggx_under_texture, parameter},
     matching::{lobe_of_material, nearest_ggx},
@@ -343,21 +343,14 @@ impl Surface {
         );
         layer(material.emission_strength > 0.0, "emission.strength", "emission", none);
         layer(material.opacity < 1.0, "geometry.opacity", "opacity", none);
-        let is_textured = material.uses_of_model() != TextureUse::default();
+        let mut of_model = material.uses_of_model();
+        // One switch for both, which an own texture of the roughness needs.
+        of_model[TextureTarget::Metalness] &= material.user_textures.get(TextureTarget::Roughness).is_none();
+        let is_textured = of_model != TextureUse::default();
         layer(
             is_textured,
             "base.color_texture",
             "textures of the model",
-            "convert to a glTF model to take them along",
-        );
-        let has_own = material
-            .user_textures
-            .iter()
-            .any(|(target, _)| material.textures[target]);
-        layer(
-            has_own && !takes.has("base.color_texture"),
-            "base.color_texture",
-            OWN_TEXTURES,
             "convert to a glTF model to take them along",
         );
         entries.extend(self.coat_losses(material, takes));

@@ -1,25 +1,8 @@
-//! Documents of elements with attributes, read and written.
+//! Documents of elements with attributes, written.
 
 use std::collections::HashMap;
 
-use roxmltree::Document;
-
-/// Most attributes of an element: the reader compares each with all before it.
-const ATTRIBUTES_MAX: usize = 1000;
-
-/// Reads a document.
-pub(super) fn parse(text: &str) -> Result<Document<'_>, String> {
-    if text.split('<').any(|tag| attributes(tag) > ATTRIBUTES_MAX) {
-        return Err(format!("an element has more than {ATTRIBUTES_MAX} attributes"));
-    }
-    Document::parse(text).map_err(crate::in_words)
-}
-
-/// How often something is set equal to a text in quotes; in a tag that is how many attributes it has.
-fn attributes(tag: &str) -> usize {
-    let is_value = |after: &&str| after.trim_start().starts_with(['"', '\'']);
-    tag.split('=').skip(1).filter(is_value).count()
-}
+pub(super) use crate::import::xml::parse;
 
 /// What stands before the elements of a document.
 pub(super) const HEAD: &str = "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n";
@@ -73,6 +56,7 @@ pub(super) fn identifier(name: &str, taken: &mut HashMap<String, usize>) -> Stri
 
 /// Numbers with a comma and a blank between them.
 pub(super) fn numbers(values: &[f32]) -> String {
-    let texts: Vec<String> = values.iter().map(f32::to_string).collect();
+    // Without a sign before 0.
+    let texts: Vec<String> = values.iter().map(|x| (x + 0.0).to_string()).collect();
     texts.join(", ")
 }

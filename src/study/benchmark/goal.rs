@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
 use super::{
-    Done, GOAL, Place, REFERENCE_SHARE, Run, default_scene, opened, report::EngineReport, scene::Scene, turns,
+    Done, GOAL, REFERENCE_SHARE, Run, TestedEngine, default_scene, opened, report::EngineReport, scene::Scene, turns,
 };
 use crate::{
     analysis::error::{colors, relative_mean_squared_error},
@@ -78,7 +78,7 @@ pub fn references(run: &mut Run<'_, '_>, folder: &TempDir) -> Result<Vec<Goal>, 
 }
 
 /// Measures the times of all scenes with a reference.
-pub fn goals(run: &mut Run<'_, '_>, place: &Place, report: &mut EngineReport, end: Instant) -> Done {
+pub fn goals(run: &mut Run<'_, '_>, place: &TestedEngine, report: &mut EngineReport, end: Instant) -> Done {
     let mut session = opened(place, Traversal::Own)?;
     session.keep_guides("for the benchmark");
     let mut denoiser = Denoiser::open();

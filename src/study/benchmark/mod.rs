@@ -78,9 +78,9 @@ fn turns(end: Instant, last: usize, scenes: usize) -> impl Iterator<Item = (usiz
 }
 
 /// An engine to measure: an adapter's, or the CPU's.
-type Place = Option<GpuAdapter>;
+type TestedEngine = Option<GpuAdapter>;
 
-fn opened(place: &Place, traversal: Traversal) -> Result<Session, StudyError> {
+fn opened(place: &TestedEngine, traversal: Traversal) -> Result<Session, StudyError> {
     Ok(match place {
         None => Session::open(EngineChoice::Cpu)?,
         Some(adapter) => Session::on_adapter(adapter, traversal)?,
@@ -104,7 +104,7 @@ struct Run<'a, 'b> {
 }
 
 /// Steps of an engine, with their weights in its time. Each begins no turn after its end.
-type Step = fn(&mut Run<'_, '_>, &Place, &mut EngineReport, Instant) -> Result<(), StudyError>;
+type Step = fn(&mut Run<'_, '_>, &TestedEngine, &mut EngineReport, Instant) -> Result<(), StudyError>;
 const STEPS: [(&str, f64, Step); 2] = [("rate", 0.65, rate::rates), ("to clean", 0.35, goal::goals)];
 
 /// Measures the machine. `watch` receives the progress and may stop the run.
@@ -173,7 +173,7 @@ fn default_scene(size: u32) -> Document {
     document
 }
 
-fn places(engine: EngineChoice) -> Vec<Place> {
+fn places(engine: EngineChoice) -> Vec<TestedEngine> {
     let cpu = (engine != EngineChoice::Gpu).then_some(None);
     let adapters = if engine == EngineChoice::Cpu {
         Vec::new()
@@ -190,7 +190,7 @@ impl Run<'_, '_> {
     }
 
     /// All steps of an engine within a time.
-    fn engine(&mut self, place: &Place, time: Duration) -> Result<EngineReport, StudyError> {
+    fn engine(&mut self, place: &TestedEngine, time: Duration) -> Result<EngineReport, StudyError> {
         let mut report = described(place);
         let begun = Instant::now();
         let mut share = 0.0;
@@ -208,7 +208,7 @@ impl Run<'_, '_> {
     }
 }
 
-fn described(place: &Place) -> EngineReport {
+fn described(place: &TestedEngine) -> EngineReport {
     let [engine, adapter, backend, driver] = match place {
         None => ["cpu".to_owned(), cpu_name(), String::new(), String::new()],
         Some(adapter) => {

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use super::{Case, Done, Place, Run, opened, report::EngineReport, turns};
+use super::{Case, Done, Run, TestedEngine, opened, report::EngineReport, turns};
 use crate::{gpu::Traversal, render::Session, study::StudyError, study::UNLIMITED};
 
 /// Steps with their units, of which more is better.
@@ -13,7 +13,7 @@ const RATES: [(&str, &str); 3] = [
 ];
 
 /// Measures the rates of all scenes.
-pub fn rates(run: &mut Run<'_, '_>, place: &Place, report: &mut EngineReport, end: Instant) -> Done {
+pub fn rates(run: &mut Run<'_, '_>, place: &TestedEngine, report: &mut EngineReport, end: Instant) -> Done {
     let mut sessions = vec![(0, opened(place, Traversal::Own)?)];
     match place {
         Some(adapter) if adapter.has_ray_queries() => sessions.push((2, opened(place, Traversal::RayQueries)?)),

@@ -13,9 +13,9 @@ use crate::{
     document::{Document, effect::EffectSwitches},
     import::environment,
     job::film::{Film, Image},
-    render::{EngineChoice, EngineInfo, Session, SessionError, output, output::Rendered},
+    render::{EngineChoice, EngineInfo, Prober, Session, SessionError, output, output::Rendered},
     scene::environment::{Environment, EnvironmentSource},
-    study::{StudyError, check::STEP, probe::Prober},
+    study::{StudyError, check::STEP},
 };
 
 /// An engine, and a folder that goes with it.

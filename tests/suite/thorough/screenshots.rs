@@ -8,7 +8,8 @@ use egui_kittest::kittest::Queryable as _;
 use glossmith::{
     app::actions::{Action, Command},
     app::layout::Pane,
-    document::{Denoise, Document},
+    app::workspaces::{Change, LOOK},
+    document::{Denoise, Document, GroundKind},
     scene::texture::TextureTarget,
     store::{examples::EXAMPLES, material_by_name, picture::png_bytes, save_document},
 };
@@ -146,6 +147,13 @@ fn car_paint() -> Document {
     document.camera.pitch_deg = 12.0;
     document.camera.fov_deg = 24.0;
     document.camera.target = Some([0.2, 1.3, 0.0]);
+    // A floor that bends up into a wall has no edge in sight.
+    document.lighting.ground.kind = GroundKind::Cyclorama;
+    document.lighting.ground.yaw_deg = document.camera.yaw_deg;
+    clean(document)
+}
+
+fn clean(mut document: Document) -> Document {
     document.view.denoise = Denoise::High;
     document.render.samples = 12;
     document
@@ -182,12 +190,12 @@ fn windows() {
     let folder = Path::new("target/windows");
     let _ = std::fs::remove_dir_all(folder);
     std::fs::create_dir_all(folder).expect("a folder");
-    let mut harness = window_of(car_paint(), folder, WINDOW);
-    reveal(
-        &mut harness,
-        &[Pane::Presets, Pane::Lighting, Pane::Material, Pane::Curve],
-    );
+    let mut harness = window_of(clean((EXAMPLES[0].document)()), folder, WINDOW);
+    request(&mut harness, Action::ChangeWorkspaces(Change::Use(LOOK.to_owned())));
+    reveal(&mut harness, &[]);
     take(&mut harness, "window");
+    drop(harness);
+    let mut harness = window_of(car_paint(), folder, WINDOW);
     harness.command(Command::ToggleTheme);
     reveal(&mut harness, &[Pane::Samples, Pane::Camera]);
     take(&mut harness, "window-light");

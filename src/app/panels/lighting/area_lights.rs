@@ -65,7 +65,7 @@ pub fn show(ui: &mut Ui, desk: &mut Desk) {
     }
     let is_full = lights.len() as f64 >= *range::AREA_LIGHTS.end();
     ui.add_enabled_ui(!is_full, |ui| {
-        ui.horizontal(|ui| {
+        ui.horizontal_wrapped(|ui| {
             for (word, made, help) in KINDS {
                 let button = ui.button(format!("+ {word}")).on_hover_text(help);
                 let name = format!("Add {}", word.to_lowercase());

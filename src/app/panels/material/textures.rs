@@ -20,7 +20,7 @@ enum Picture {
 }
 
 /// The parameters of a target's texture.
-struct Place {
+struct TextureParameters {
     /// Where it stands: `base.color` for `base.color_map`. That of the normal has no number beside it, and stands at its
     /// switch.
     at: Option<&'static Parameter>,
@@ -29,13 +29,13 @@ struct Place {
 }
 
 /// The places of all targets, in their order.
-static PLACES: LazyLock<Vec<Place>> = LazyLock::new(|| {
+static PLACES: LazyLock<Vec<TextureParameters>> = LazyLock::new(|| {
     let of_key = |key: &str| PARAMETERS.iter().find(|parameter| parameter.key == key);
     let place = |target: &TextureTarget| {
         let key = target.map_key().trim_end_matches("_map");
         let switch = of_key(&format!("{key}_texture"));
         let at = of_key(key).or(switch);
-        Place { at, switch }
+        TextureParameters { at, switch }
     };
     TextureTarget::ALL.iter().map(place).collect()
 });

@@ -25,7 +25,7 @@ use crate::{
 /// Things that stand together.
 pub struct Group {
     pub title: String,
-    pub entries: Vec<Entry>,
+    pub entries: Vec<Card>,
     /// What is to be said of them.
     pub notes: Vec<String>,
     /// The watched folder that they lie in.
@@ -33,7 +33,7 @@ pub struct Group {
 }
 
 impl Group {
-    fn new(title: impl Into<String>, entries: Vec<Entry>) -> Self {
+    fn new(title: impl Into<String>, entries: Vec<Card>) -> Self {
         Self {
             title: title.into(),
             entries,
@@ -44,7 +44,7 @@ impl Group {
 }
 
 /// Something that can be used.
-pub struct Entry {
+pub struct Card {
     /// By which it is known.
     pub key: String,
     name: String,
@@ -52,19 +52,19 @@ pub struct Entry {
     pub full_name: String,
     /// The user's own file, which can be renamed and deleted.
     pub own: Option<PathBuf>,
-    kind: EntryKind,
+    kind: CardKind,
     picture: Option<TextureHandle>,
 }
 
-enum EntryKind {
+enum CardKind {
     Material(Box<MaterialSettings>),
     Environment(EnvironmentSource),
     /// A file that can't be used, and why.
     Broken(String),
 }
 
-impl Entry {
-    fn new(desk: &Desk, key: String, name: String, kind: EntryKind) -> Self {
+impl Card {
+    fn new(desk: &Desk, key: String, name: String, kind: CardKind) -> Self {
         Self {
             picture: desk.shared.pictures.texture(&key).cloned(),
             key,
@@ -81,18 +81,18 @@ impl Entry {
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         match material {
             Ok(material) => Self::material(desk, key, material),
-            Err(why) => Self::new(desk, key, name, EntryKind::Broken(why.clone())),
+            Err(why) => Self::new(desk, key, name, CardKind::Broken(why.clone())),
         }
     }
 
     fn material(desk: &Desk, key: String, material: &MaterialSettings) -> Self {
-        let kind = EntryKind::Material(Box::new(material.clone()));
+        let kind = CardKind::Material(Box::new(material.clone()));
         Self::new(desk, key, material.name.clone(), kind)
     }
 
     fn environment(desk: &Desk, source: EnvironmentSource) -> Self {
         let (key, label) = (environment_key(&source), environment_label(&source));
-        Self::new(desk, key, label, EntryKind::Environment(source))
+        Self::new(desk, key, label, CardKind::Environment(source))
     }
 
     /// Whether its name, its group and the words of its look have each word that is searched for, in lower case.
@@ -101,7 +101,7 @@ impl Entry {
             return true;
         }
         let look = match &self.kind {
-            EntryKind::Material(material) => material.look_words().join(" "),
+            CardKind::Material(material) => material.look_words().join(" "),
             _ => String::new(),
         };
         let texts = [&self.name, group, &look].map(str::to_lowercase);
@@ -119,7 +119,7 @@ impl Entry {
     /// Width of its image over the height.
     pub fn aspect(&self) -> f32 {
         match self.kind {
-            EntryKind::Environment(_) => 2.0,
+            CardKind::Environment(_) => 2.0,
             _ => 1.0,
         }
     }
@@ -127,12 +127,12 @@ impl Entry {
     /// Shows it, and takes what the user does with it.
     pub fn show(&self, ui: &mut Ui, desk: &mut Desk, layout: Layout) {
         let (color, is_current) = match &self.kind {
-            EntryKind::Material(material) => (widgets::shown(material.base_color), **material == desk.material()),
-            EntryKind::Environment(source) => {
+            CardKind::Material(material) => (widgets::shown(material.base_color), **material == desk.material()),
+            CardKind::Environment(source) => {
                 let is_current = *source == desk.document.lighting.environment;
                 (ui.visuals().extreme_bg_color, is_current)
             }
-            EntryKind::Broken(why) => {
+            CardKind::Broken(why) => {
                 let label = Label::new(&self.name).truncate();
                 ui.add_enabled(false, label).on_disabled_hover_text(why);
                 return;
@@ -154,7 +154,7 @@ impl Entry {
         let is_favourite = desk.shared.shelves.kept.favourites.contains(&self.key);
         let response = tile.show(ui, layout, (&menu_name, is_favourite), |ui| self.menu(ui, desk));
         match &self.kind {
-            EntryKind::Material(material) => {
+            CardKind::Material(material) => {
                 if response.clicked() {
                     let picks = &mut desk.shared.viewing.picks;
                     let is_rival = picks.take_if(|pick| *pick == Pick::Rival).is_some();
@@ -171,7 +171,7 @@ impl Entry {
                 let source = source_of_values(&self.full_name).filter(|_| self.own.is_none());
                 widgets::explained(response, source.unwrap_or_default());
             }
-            EntryKind::Environment(source) if response.clicked() && !is_current => {
+            CardKind::Environment(source) if response.clicked() && !is_current => {
                 desk.actions.push(Action::UseEnvironment(source.clone()));
             }
             _ => {}
@@ -190,7 +190,7 @@ impl Entry {
         if widgets::pressed(ui, label, "Favourites stand at the top.") {
             kept.favour(&self.key);
         }
-        if let EntryKind::Material(material) = &self.kind {
+        if let CardKind::Material(material) = &self.kind {
             let help = "Shows it beside the material that is edited.";
             if widgets::pressed(ui, "Compare as B", help) {
                 let rival = Rival::Material(material.clone());
@@ -202,7 +202,7 @@ impl Entry {
         }
         let Some(path) = &self.own else { return };
         ui.separator();
-        let is_material = matches!(self.kind, EntryKind::Material(_));
+        let is_material = matches!(self.kind, CardKind::Material(_));
         if widgets::pressed_if(ui, is_material, "Rename", "", "") {
             desk.shared.library.renaming = Some((path.clone(), self.name.clone()));
         }
@@ -260,11 +260,11 @@ pub fn groups(desk: &mut Desk) -> Vec<Group> {
     groups.push(Group::new("Mine", own(desk)));
     groups.extend(watched(desk));
     let entries = groups.iter().flat_map(|group| &group.entries);
-    let subject = |entry: &Entry| {
+    let subject = |entry: &Card| {
         let subject = match &entry.kind {
-            EntryKind::Material(material) => Subject::Material(material.clone()),
-            EntryKind::Environment(source) => Subject::Environment(source.clone()),
-            EntryKind::Broken(_) => return None,
+            CardKind::Material(material) => Subject::Material(material.clone()),
+            CardKind::Environment(source) => Subject::Environment(source.clone()),
+            CardKind::Broken(_) => return None,
         };
         Some((entry.key.clone(), subject))
     };
@@ -272,7 +272,7 @@ pub fn groups(desk: &mut Desk) -> Vec<Group> {
     let favourites = &desk.shared.shelves.kept.favourites;
     let mut first = Vec::new();
     for group in &mut groups {
-        let is_favourite = |entry: &mut Entry| favourites.contains(&entry.key);
+        let is_favourite = |entry: &mut Card| favourites.contains(&entry.key);
         first.extend(group.entries.extract_if(.., is_favourite));
     }
     groups.insert(0, Group::new("Favourites", first));
@@ -280,16 +280,16 @@ pub fn groups(desk: &mut Desk) -> Vec<Group> {
 }
 
 fn shipped(desk: &Desk) -> Vec<Group> {
-    let entry = |material| Entry::material(desk, preset_key(material), material);
+    let entry = |material| Card::material(desk, preset_key(material), material);
     let mut entries = PRESETS.iter().map(entry);
     let group = |(title, files): &(&str, &[&str])| Group::new(*title, entries.by_ref().take(files.len()).collect());
     SHIPPED.iter().map(group).collect()
 }
 
-fn own(desk: &Desk) -> Vec<Entry> {
-    let own = desk.shared.library.entries.iter().map(|own| Entry {
+fn own(desk: &Desk) -> Vec<Card> {
+    let own = desk.shared.library.entries.iter().map(|own| Card {
         own: Some(own.path.clone()),
-        ..Entry::file(desk, &own.path, own.material.as_ref())
+        ..Card::file(desk, &own.path, own.material.as_ref())
     });
     own.collect()
 }
@@ -322,11 +322,11 @@ fn watched(desk: &Desk) -> Vec<Group> {
 }
 
 /// A file in a watched folder, which others may share their name with.
-fn found(desk: &Desk, folder: &Path, item: &Item) -> Entry {
+fn found(desk: &Desk, folder: &Path, item: &Item) -> Card {
     let path = &item.path;
     let mut entry = match &item.kind {
-        ItemKind::Material(material) => Entry::file(desk, path, material.as_deref()),
-        ItemKind::Environment => Entry::environment(desk, EnvironmentSource::File(path.clone())),
+        ItemKind::Material(material) => Card::file(desk, path, material.as_deref()),
+        ItemKind::Environment => Card::environment(desk, EnvironmentSource::File(path.clone())),
     };
     let within = path.strip_prefix(folder.parent().unwrap_or(folder)).unwrap_or(path);
     entry.full_name = format!("{} ({})", entry.name, within.display());

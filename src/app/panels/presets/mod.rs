@@ -2,7 +2,7 @@
 
 mod entries;
 
-use entries::{Entry, groups};
+use entries::{Card, groups};
 
 use super::*;
 use crate::{
@@ -99,7 +99,7 @@ impl PresetsPanel {
 }
 
 /// One thing, or the field in which its name is typed.
-fn show_entry(ui: &mut Ui, desk: &mut Desk, entry: &Entry, layout: Layout) {
+fn show_entry(ui: &mut Ui, desk: &mut Desk, entry: &Card, layout: Layout) {
     if let Layout::Grid(height) = layout {
         tile::make_room(ui, height * entry.aspect());
     }

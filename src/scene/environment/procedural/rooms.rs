@@ -28,24 +28,30 @@ impl Walls {
     }
 }
 
-/// Warm, and not much darker than the lamps: gold and copper have their colours where they reflect either.
+/// Wood. The lamps are as much cooler as it is warm: a level table gets neutral light, so white is white, while metals, which
+/// reflect more of the room than of the lamps, are warm.
 const PRODUCT_WALLS: Walls = Walls {
-    floor: [0.6, 0.512, 0.417],
-    wall: [0.5, 0.432, 0.352],
-    ceiling: [0.45, 0.407, 0.355],
+    floor: [0.486, 0.387, 0.272],
+    wall: [0.328, 0.262, 0.184],
+    ceiling: [0.267, 0.213, 0.15],
     bend: 0.25,
 };
+/// Radiance of the grey backdrop.
+const BACKDROP: [f64; 3] = [0.404, 0.376, 0.344];
+/// The way to its middle, behind the object; cosines to it where the backdrop ends, and within which it hides the wall.
+const TO_BACKDROP: [f64; 3] = [-0.34, -0.15, -0.94];
+const BACKDROP_EDGE: [f64; 2] = [0.3, 0.9];
+const DAYLIGHT: [f64; 3] = [0.943, 0.969, 1.0];
 const PRODUCT: [SoftBox; 5] = [
-    // From the left above, in front: large and warm, shapes the object.
-    soft_box([-2.6, 2.3, 2.2], [2.1, 1.9], [3.9, 0.4, 0.6], [1.0, 0.807, 0.585]),
-    // From the right: large and less warm, opens the shadows.
-    soft_box([3.5, 1.0, 1.2], [1.8, 2.2], [1.12, 0.35, 0.7], [1.0, 0.887, 0.757]),
+    // From the left above, in front: large, shapes the object.
+    soft_box([-2.6, 2.3, 2.2], [2.1, 1.9], [8.0, 0.4, 0.6], DAYLIGHT),
+    // From the right: large and weak, opens the shadows.
+    soft_box([3.5, 1.0, 1.2], [1.8, 2.2], [2.14, 0.35, 0.7], DAYLIGHT),
     // Above, a little behind: draws the upper edges.
-    soft_box([0.3, 3.8, -1.2], [2.4, 1.0], [2.3, 0.5, 0.3], [1.0, 0.88, 0.75]),
-    // Behind on the right, narrow and white.
-    soft_box([2.9, 1.2, -2.6], [0.5, 2.2], [4.3, 0.5, 0.2], [0.96, 0.95, 0.96]),
-    // Behind on the left, narrow and warm.
-    soft_box([-3.4, 0.9, -2.0], [0.4, 2.0], [3.2, 0.5, 0.2], [1.0, 0.81, 0.6]),
+    soft_box([0.3, 3.8, -1.2], [2.4, 1.0], [4.4, 0.5, 0.3], DAYLIGHT),
+    // Behind on the right and on the left, narrow.
+    soft_box([2.9, 1.2, -2.6], [0.5, 2.2], [8.55, 0.5, 0.2], DAYLIGHT),
+    soft_box([-3.4, 0.9, -2.0], [0.4, 2.0], [6.2, 0.5, 0.2], DAYLIGHT),
 ];
 
 /// Dim, so that the lamps alone shape the object.
@@ -113,9 +119,14 @@ const WAREHOUSE: [SoftBox; 8] = [
     soft_box([4.2, 0.3, 0.4], [1.6, 1.5], [1.3, 0.7, 0.15], [1.0, 0.72, 0.45]),
 ];
 
-/// A photographer's table: large warm soft boxes in a warm room. 1024 × 512.
+/// A photographer's table: large soft boxes of daylight and a grey backdrop in a room of wood. 1024 × 512.
 pub fn product() -> Result<Environment, MapError> {
-    PRODUCT_WALLS.with("product", &PRODUCT)
+    let [backdrop, to_backdrop] = [BACKDROP, TO_BACKDROP].map(Vec3::from_f64);
+    let [from, to] = BACKDROP_EDGE;
+    room_with("product", &PRODUCT, |direction| {
+        let cover = smoothstep(from, to, direction.dot(to_backdrop.normalize()));
+        PRODUCT_WALLS.radiance(direction).mix(backdrop, cover)
+    })
 }
 
 /// A portrait studio: one large warm lamp near the camera, reflectors, a dim room. 1024 × 512.

@@ -7,7 +7,10 @@ use serde::{Deserialize, Serialize};
 
 use super::super::{Environment, MapError, distribution::texel_solid_angle, environment_direction, texel_direction};
 use super::texels_of;
-use crate::optics::vector::{Vec3, vec3};
+use crate::{
+    named::with_defaults,
+    optics::vector::{Vec3, vec3},
+};
 
 const WIDTH: u32 = 2048;
 const HEIGHT: u32 = 1024;
@@ -30,28 +33,18 @@ const OZONE: [f64; 3] = [0.043, 0.030, 0.003];
 /// diffuse table has luminance 1.
 const EXPOSURE: f64 = 0.0315;
 
-/// A clear sky's parameters.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct SkyParams {
-    /// Height of the sun above the horizon in degrees, in [0, 90].
-    pub sun_elevation_deg: f64,
-    /// Azimuth of the sun in degrees, from −Z (u = 0) towards +X (90) and +Z (180).
-    pub sun_azimuth_deg: f64,
-    /// Haze: 2 very clear, 3 clear, 6 hazy; in [1, 10].
-    pub turbidity: f64,
-    /// Albedo of the ground, linear Rec. 709, in [0, 1].
-    pub ground_albedo: [f64; 3],
-}
-
-impl Default for SkyParams {
-    /// Late morning, the sun in front (+Z) and to the left (−X).
-    fn default() -> Self {
-        Self {
-            sun_elevation_deg: 40.0,
-            sun_azimuth_deg: 222.0,
-            turbidity: 3.0,
-            ground_albedo: [0.23, 0.205, 0.175],
-        }
+with_defaults! {
+    /// A clear sky's parameters: late morning, the sun in front (+Z) and to the left (−X).
+    #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+    pub struct SkyParams {
+        /// Height of the sun above the horizon in degrees, in [0, 90].
+        pub sun_elevation_deg: f64 = 40.0,
+        /// Azimuth of the sun in degrees, from −Z (u = 0) towards +X (90) and +Z (180).
+        pub sun_azimuth_deg: f64 = 222.0,
+        /// Haze: 2 very clear, 3 clear, 6 hazy; in [1, 10].
+        pub turbidity: f64 = 3.0,
+        /// Albedo of the ground, linear Rec. 709, in [0, 1].
+        pub ground_albedo: [f64; 3] = [0.23, 0.205, 0.175],
     }
 }
 

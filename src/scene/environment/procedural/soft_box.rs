@@ -45,26 +45,56 @@ pub fn room_with(
     boxes: &[SoftBox],
     walls: impl Fn(Vec3<f64>) -> Vec3<f64> + Sync,
 ) -> Result<Environment, MapError> {
+    let placed: Vec<_> = boxes.iter().map(Placed::of).collect();
     let texels = texels_of(WIDTH, HEIGHT, |direction| {
-        let over = |behind, soft_box: &SoftBox| soft_box.over(behind, direction);
-        boxes.iter().fold(walls(direction), over).to_f32()
+        let over = |behind, soft_box: &Placed| soft_box.over(behind, direction);
+        placed.iter().fold(walls(direction), over).to_f32()
     });
     Environment::from_texels(name, WIDTH, HEIGHT, texels)
 }
 
-impl SoftBox {
+/// A soft box with its axes.
+struct Placed<'a> {
+    of: &'a SoftBox,
+    centre: Vec3<f64>,
+    distance: f64,
+    normal: Vec3<f64>,
+    right: Vec3<f64>,
+    up: Vec3<f64>,
+}
+
+impl<'a> Placed<'a> {
+    fn of(of: &'a SoftBox) -> Self {
+        let centre = Vec3::from_f64(of.centre);
+        let normal = centre.normalize();
+        let right = vec3(0.0, 1.0, 0.0).cross(normal).normalize();
+        Self {
+            of,
+            centre,
+            distance: centre.length(),
+            normal,
+            right,
+            up: normal.cross(right),
+        }
+    }
+
     /// Radiance from a direction with the box composited over `behind`.
     fn over(&self, behind: Vec3<f64>, direction: Vec3<f64>) -> Vec3<f64> {
-        let centre = Vec3::from_f64(self.centre);
-        let normal = centre.normalize();
-        let facing = direction.dot(normal);
+        let facing = direction.dot(self.normal);
         if facing <= 0.0 {
             return behind;
         }
-        let right = vec3(0.0, 1.0, 0.0).cross(normal).normalize();
-        let up = normal.cross(right);
-        let offset = direction * (centre.length() / facing) - centre;
-        let (x, y) = (offset.dot(right), offset.dot(up));
+        let offset = direction * (self.distance / facing) - self.centre;
+        self.of.over(behind, [offset.dot(self.right), offset.dot(self.up)])
+    }
+}
+
+impl SoftBox {
+    /// Radiance from a point in the box's plane with the box composited over `behind`.
+    fn over(&self, behind: Vec3<f64>, [x, y]: [f64; 2]) -> Vec3<f64> {
+        if x.abs() > self.half_width || y.abs() > self.half_height {
+            return behind;
+        }
         let cover = 1.0 - smoothstep(-self.edge, 0.0, self.distance(x, y));
         let from_middle = ((x / self.half_width).powi(2) + (y / self.half_height).powi(2)) / 2.0;
         let radiance = self.radiance * mix(1.0, self.corner_share, from_middle.min(1.0));

@@ -177,7 +177,7 @@ fn radius_of(model: &Model) -> f64 {
 
 /// What reading the model approximated or left out.
 fn losses_of(model: &Model, lobe: ImportLobe) -> Vec<Entry> {
-    let entry = |entry: &crate::scene::Entry| match entry.fate {
+    let entry = |entry: &crate::scene::ImportNote| match entry.fate {
         Fate::Used => None,
         Fate::Approximated => Some(Entry::approximated(entry.what.clone(), "", None)),
         Fate::Ignored | Fate::Missing => Some(Entry::dropped(entry.what.clone(), "")),

@@ -3,13 +3,12 @@
 use crate::{
     document::MaterialSettings,
     import::{Budget, picture::read_texture},
-    optics::tone::{linear_from_srgb, srgb_from_linear},
-    optics::vector::vec3,
+    optics::tone::srgb_from_linear,
     scene::{
         Filter, Model, Texture, TextureRef, Wrap,
         texture::{TextureProjection, TextureTarget, TextureValues, UserTexture, slots_with_coordinates},
     },
-    store::exchange::report::Entry,
+    store::exchange::{report::Entry, textures::Carried},
 };
 
 /// Puts a material's own textures into the model's slot where the file can have them, within the budget, and takes them
@@ -22,7 +21,7 @@ pub fn hand_over(model: &mut Model, slot: usize, material: &mut MaterialSettings
         let Some(texture) = material.user_textures.get(target).filter(|_| material.textures[target]) else {
             continue;
         };
-        match picture(model, slot, (target, texture), budget) {
+        match picture(model, slot, (material, target, texture), budget) {
             Ok(picture) => pictures.push((target, texture.clone(), picture)),
             Err(why) => entries.push(dropped(target, &why)),
         }
@@ -98,7 +97,7 @@ fn dropped(target: TextureTarget, why: &str) -> Entry {
 fn picture(
     model: &Model,
     slot: usize,
-    (target, texture): (TextureTarget, &UserTexture),
+    (material, target, texture): (&MaterialSettings, TextureTarget, &UserTexture),
     budget: &Budget,
 ) -> Result<Texture, String> {
     let has_coordinates = slots_with_coordinates(model).get(slot).copied().unwrap_or(false);
@@ -113,12 +112,16 @@ fn picture(
     if target.is_normal() && texture.rotation_deg != 0.0 {
         return Err("the format does not turn normals with their texture".to_owned());
     }
+    let [a, b, _, c, d, _] = texture.picture_from_uv();
+    if (a * b + c * d).abs() > 1e-4 * (a * a + b * b + c * c + d * d) {
+        return Err("the format stretches a texture before it turns it, not after".to_owned());
+    }
     if target == TextureTarget::CoatColor {
         return Err("the format has a coat's colour in a draft alone".to_owned());
     }
     let read = read_texture(&texture.file, target.is_color(), u32::MAX, budget)?;
-    let channel = texture.channel_of(target, read.is_translucent()) as usize;
-    let changed = |texel: &[u8; 4]| changed(target, texture, channel, *texel);
+    let carried = Carried::of(material, (target, texture), ());
+    let changed = |texel: &[u8; 4]| changed(&carried, *texel);
     Ok(Texture {
         rgba8: read.rgba8.as_chunks::<4>().0.iter().flat_map(changed).collect(),
         rgba16: Vec::new(),
@@ -126,41 +129,16 @@ fn picture(
     })
 }
 
-/// A texel of a file: sRGB codes of a colour, a normal, or a number in all channels.
-fn changed(target: TextureTarget, texture: &UserTexture, channel: usize, [r, g, b, a]: [u8; 4]) -> [u8; 4] {
-    if target.is_normal() {
-        return [r, if texture.inverted { 255 - g } else { g }, b, 255];
-    }
-    let decoded = |code: [u8; 3]| {
-        let share = code.map(|code| f64::from(code) / 255.0);
-        if texture.is_srgb(target) {
-            linear_from_srgb(vec3(share[0], share[1], share[2]))
-        } else {
-            vec3(share[0], share[1], share[2])
-        }
-    };
-    let strength = f64::from(texture.strength);
-    let put_on = |x: f64| {
-        if texture.inverted {
-            1.0 - strength * x
-        } else {
-            1.0 - strength + strength * x
-        }
-    };
+/// A texel of a file: sRGB codes of a colour, a normal, or a number in the channel that it has there.
+fn changed(texture: &Carried<'_, ()>, texel: [u8; 4]) -> [u8; 4] {
+    let value = texture.value(texel.map(|code| f64::from(code) / 255.0), 1.0);
     let code = |x: f64| (255.0 * x).round().clamp(0.0, 255.0) as u8;
-    if target.is_color() {
-        let [r, g, b] = srgb_from_linear(decoded([r, g, b]).map(put_on)).to_f64().map(code);
-        return [r, g, b, 255];
-    }
-    let number = match channel {
-        3 => f64::from(a) / 255.0,
-        _ => decoded([r, g, b]).to_f64()[channel],
-    };
-    let code = code(put_on(number));
     // What shares the image with it is left as it is.
-    let mut texel = [255; 4];
-    if let TextureValues::Number(channel) = target.values() {
-        texel[channel] = code;
+    let mut changed = [255; 4];
+    match texture.target.values() {
+        TextureValues::Number(channel) => changed[channel] = code(value.x),
+        TextureValues::Color => changed[..3].copy_from_slice(&srgb_from_linear(value).to_f64().map(code)),
+        TextureValues::Vector => changed[..3].copy_from_slice(&value.to_f64().map(code)),
     }
-    texel
+    changed
 }

@@ -2,10 +2,14 @@
 
 use std::{cell::Cell, collections::HashSet, path::PathBuf};
 
+use glam::{DAffine2, DVec2};
 use roxmltree::Node;
 
 use super::{images::Images, spaces::Space, surfaces::SurfaceKind};
-use crate::scene::texture::{TextureChannel, TextureSpace, UserTexture};
+use crate::{
+    scene::texture::{TextureChannel, TextureProjection, TextureSpace, UserTexture},
+    store::exchange::textures::place,
+};
 
 /// Deepest chain of nodes that is followed.
 const DEPTH_MAX: usize = 64;
@@ -23,9 +27,10 @@ pub(super) struct Worth {
     pub(super) pictures: Vec<PathBuf>,
     /// Something was computed of these means.
     pub(super) is_computed: bool,
-    /// The image that it is, where it is one, and what that is multiplied by.
-    pub(super) texture: Option<UserTexture>,
-    pub(super) factor: [f32; 4],
+    /// The image that it is, where it is one, what that is multiplied by and what is added then.
+    texture: Option<UserTexture>,
+    factor: [f32; 4],
+    bias: [f32; 4],
     /// The unit that it is written in.
     pub(super) unit: Option<String>,
     /// What of it was not understood.
@@ -46,15 +51,54 @@ impl Worth {
         [r, g, b]
     }
 
-    /// Two values multiplied, an image of which stays one.
-    fn take_product(&mut self, of: &[Self]) {
-        let [a, b] = of else { return };
-        let (image, other) = if a.texture.is_some() { (a, b) } else { (b, a) };
-        if other.pictures.is_empty() && !image.is_computed {
-            self.texture.clone_from(&image.texture);
-            self.factor = std::array::from_fn(|i| image.factor[i] * other.value[i]);
-            self.is_computed = self.texture.is_none() && self.is_computed;
+    /// What is computed of values: of one image that is multiplied and added to, that image.
+    fn take_affine(&mut self, of: &[Self], compute: &Compute) {
+        let mut images = (0..of.len()).filter(|&place| !of[place].pictures.is_empty());
+        let (Some(place), None) = (images.next(), images.next()) else {
+            return;
+        };
+        let at = |x: f32| {
+            let mut values: Vec<[f32; 4]> = of.iter().map(|one| one.value).collect();
+            values[place] = std::array::from_fn(|i| of[place].factor[i] * x + of[place].bias[i]);
+            compute(&values)
+        };
+        let [zero, quarter, half, one] = [0.0, 0.25, 0.5, 1.0].map(at);
+        let is_between = |found: f32, i: usize, x: f32| (found - zero[i] - x * (one[i] - zero[i])).abs() < 1e-5;
+        if (0..4).all(|i| is_between(quarter[i], i, 0.25) && is_between(half[i], i, 0.5)) {
+            self.texture.clone_from(&of[place].texture);
+            (self.factor, self.bias) = (std::array::from_fn(|i| one[i] - zero[i]), zero);
+            self.is_computed = of[place].is_computed;
         }
+    }
+
+    /// The texture that it is, and what that multiplies; none where more is added than its strength says.
+    pub(super) fn as_texture(&self) -> Option<(UserTexture, [f32; 3])> {
+        let (texture, [scale, bias]) = (self.texture.clone()?, [self.factor, self.bias]);
+        let inverted = (0..3).any(|i| scale[i] < 0.0);
+        let factor = [0, 1, 2].map(|i| if inverted { bias[i] } else { scale[i] + bias[i] });
+        let varied = (0..3).find(|&i| scale[i] != 0.0);
+        let strength = varied.map_or(1.0, |i| scale[i].abs() / factor[i]);
+        let is_it = |i: usize| (scale[i].abs() - strength * factor[i]).abs() <= 1e-5 * (1.0 + factor[i].abs());
+        let is_whole = (strength - 1.0).abs() < 1e-5;
+        let texture = UserTexture {
+            inverted,
+            strength: if is_whole { 1.0 } else { strength },
+            ..texture
+        };
+        (strength < 1.0 + 1e-5 && (0..3).all(is_it)).then_some((texture, factor))
+    }
+
+    /// The texture of normals that it is, and how steep; `is_packed` where they lie in [0, 1].
+    pub(super) fn as_normals(&self, is_packed: bool) -> Option<(UserTexture, f32)> {
+        let (texture, [mut scale, mut bias]) = (self.texture.clone()?, [self.factor, self.bias]);
+        if is_packed || bias == [0.0; 4] {
+            (scale, bias) = (scale.map(|x| 2.0 * x), bias.map(|x| 2.0 * x - 1.0));
+        }
+        let inverted = scale[1] < 0.0;
+        let slopes = [scale[0], if inverted { -scale[0] } else { scale[0] }, 2.0];
+        let is_it = |i: usize| (scale[i] - slopes[i]).abs() < 1e-5 && (bias[i] + 0.5 * slopes[i]).abs() < 1e-5;
+        let texture = UserTexture { inverted, ..texture };
+        (0..3).all(is_it).then_some((texture, 0.5 * scale[0]))
     }
 
     /// These channels of it; one stands for all.
@@ -63,7 +107,7 @@ impl Worth {
             let of_place = |i| [r, g, b, a, 0.0, 1.0][*channels.get(i).unwrap_or(&channels[channels.len() - 1])];
             std::array::from_fn(of_place)
         };
-        (self.value, self.factor) = (pick(self.value), pick(self.factor));
+        (self.value, self.factor, self.bias) = (pick(self.value), pick(self.factor), pick(self.bias));
         self.texture = self.texture.and_then(|texture| match (channels, texture.channel) {
             (&[channel @ 0..4], TextureChannel::Auto) => Some(UserTexture {
                 channel: TextureChannel::ALL[channel + 1],
@@ -386,8 +430,8 @@ impl Graph<'_> {
                     }
                     found.pictures.dedup();
                     found.is_computed = !found.pictures.is_empty();
-                    if kind == "multiply" {
-                        found.take_product(&all);
+                    if ELEMENTWISE.iter().any(|(other, ..)| *other == kind) {
+                        found.take_affine(&all, &compute);
                     }
                     Some(found)
                 }
@@ -464,10 +508,7 @@ impl Graph<'_> {
                 [("scale", 1.0), ("bias", 0.0)].map(|(name, default)| self.or((node, within), name, default, depth));
             let (scale, bias) = (scale?.value, bias?.value);
             found.value = std::array::from_fn(|i| found.value[i] * scale[i] + bias[i]);
-            (found.factor, found.is_computed) = (scale, bias != [0.0; 4]);
-            // So are normals written.
-            let is_direction = scale[..3] == [2.0; 3] && bias[..3] == [-1.0; 3];
-            found.texture = found.texture.filter(|_| !found.is_computed || is_direction);
+            (found.factor, found.bias) = (scale, bias);
         }
         found.notes.append(&mut notes);
         if read.is_even {
@@ -476,17 +517,72 @@ impl Graph<'_> {
             return Ok(found);
         }
         found.pictures.push(file);
-        let tiling = self.or((node, within), "uvtiling", 1.0, depth)?.value;
-        let is_placed = tiling[0] > 0.0 && tiling[1] > 0.0;
-        found.texture = found.texture.filter(|_| is_placed);
-        if let Some(texture) = &mut found.texture {
-            let offset = self.or((node, within), "uvoffset", 0.0, depth)?.value;
-            (texture.scale, texture.stretch) = (tiling[0], tiling[1] / tiling[0]);
-            // About the middle here, about the origin there.
-            texture.offset = [0, 1].map(|i| offset[i] + 0.5 * (1.0 - tiling[i]));
+        if let Some(mut texture) = found.texture.take() {
             found.notes.extend(node.children().filter_map(of_place));
+            let (mapping, is_read) = self.mapping(node, &mut texture, within, depth)?;
+            if !is_read {
+                found.notes.push("the image's coordinates are not read".to_owned());
+            }
+            found.texture = place(&mut texture, mapping).then_some(texture);
         }
         Ok(found)
+    }
+
+    /// What is done to the texture coordinates of an image, v pointing upwards, and whether all of it is known; their set goes into the
+    /// texture.
+    fn mapping<'a>(
+        &self,
+        image: Node<'a, 'a>,
+        texture: &mut UserTexture,
+        within: Within<'_, 'a>,
+        depth: usize,
+    ) -> Result<(DAffine2, bool), Unknown> {
+        let pair = |node: Node<'a, 'a>, name: &str, default: f32| {
+            let found = self.or((node, within), name, default, depth)?.value;
+            Ok(DVec2::new(found[0].into(), found[1].into()))
+        };
+        let moved = DAffine2::from_translation;
+        let tiling = DAffine2::from_scale(pair(image, "uvtiling", 1.0)?);
+        let mut mapping = moved(-pair(image, "uvoffset", 0.0)?) * tiling;
+        let mut place = ["texcoord", "st"].into_iter().find_map(|name| child(image, name));
+        for _ in 0..DEPTH_MAX {
+            let Some(Source { node, .. }) = place.and_then(source_of) else {
+                return Ok((mapping, true));
+            };
+            let text = |name: &str| child(node, name)?.attribute("value");
+            place = match node.tag_name().name() {
+                "UsdTransform2d" => {
+                    let angle = pair(node, "rotation", 0.0)?.x.to_radians();
+                    let turned = DAffine2::from_scale_angle_translation(
+                        pair(node, "scale", 1.0)?,
+                        angle,
+                        pair(node, "translation", 0.0)?,
+                    );
+                    mapping *= turned;
+                    child(node, "in")
+                }
+                "place2d" => {
+                    let turn = DAffine2::from_angle(-pair(node, "rotate", 0.0)?.x.to_radians());
+                    let scale = DAffine2::from_scale(pair(node, "scale", 1.0)?.recip());
+                    let offset = moved(-pair(node, "offset", 0.0)?);
+                    let pivot = pair(node, "pivot", 0.0)?;
+                    let placed = match text("operationorder") {
+                        Some("1") => scale * turn * offset,
+                        _ => offset * turn * scale,
+                    };
+                    mapping *= moved(pivot) * placed * moved(-pivot);
+                    child(node, "texcoord")
+                }
+                "texcoord" | "geompropvalue" | "UsdPrimvarReader" => {
+                    if text("index") == Some("1") || text("varname") == Some("st1") {
+                        texture.projection = TextureProjection::Second;
+                    }
+                    return Ok((mapping, true));
+                }
+                _ => return Ok((mapping, false)),
+            };
+        }
+        Ok((mapping, false))
     }
 }
 
@@ -495,15 +591,11 @@ fn of_place(input: Node<'_, '_>) -> Option<String> {
     let name = input.attribute("name").filter(|_| input.has_tag_name("input"))?;
     let value = input.attribute("value").unwrap_or_default().trim();
     let is_read = match name {
-        "texcoord" | "st" => source_of(input).is_none_or(|source| {
-            let kinds = ["texcoord", "geompropvalue", "UsdPrimvarReader"];
-            kinds.iter().any(|kind| source.node.has_tag_name(*kind))
-        }),
         "uaddressmode" | "vaddressmode" | "wrapS" | "wrapT" => {
             matches!(value, "" | "periodic" | "repeat" | "useMetadata" | "black")
         }
         "scale" | "bias" | "fallback" | "sourceColorSpace" => input.parent()?.has_tag_name("UsdUVTexture"),
-        "file" | "default" | "uvtiling" | "uvoffset" | "filtertype" | "layer" => true,
+        "file" | "default" | "texcoord" | "st" | "uvtiling" | "uvoffset" | "filtertype" | "layer" => true,
         _ => false,
     };
     (!is_read).then(|| format!("the image's {name} is not read"))

@@ -30,7 +30,7 @@ impl<'p> Images<'p> {
 
     /// The file of an image by its name in the document.
     pub(super) fn path(&self, file: &Path) -> PathBuf {
-        self.folder.join(file)
+        self.folder.join(file).components().collect()
     }
 
     /// Mean of an image by its name in the document.

@@ -11,11 +11,12 @@ use super::{
     images::Images,
     include::whole_text,
     inputs::Inputs,
+    network::{self, OPEN_PBR, PREVIEW_SURFACE, STANDARD_SURFACE},
     surfaces::SurfaceKind,
-    units, write,
+    units,
 };
 use crate::{
-    document::{ImportLobe, MaterialSettings, PARAMETERS, Parameter, UserTextures},
+    document::{ImportLobe, MaterialSettings, PARAMETERS, Parameter},
     import::{FileParameter, Goes},
     optics::fresnel::Fresnel,
     scene::Loading,
@@ -36,13 +37,14 @@ pub fn read(path: &Path, options: ReadOptions) -> Result<Subject, ExchangeError>
     if !document.root_element().has_tag_name("materialx") {
         return Err(wrong("it has no <materialx>".to_owned()));
     }
-    read_document(path, &document, options)
+    read_document(path, &document, Vec::new(), options)
 }
 
-/// The materials of a document whose images are seen from the file at `path`.
+/// The materials of a document whose images are seen from the file at `path`; `lost` is what the first lost on its way into that.
 pub(in crate::store::exchange) fn read_document(
     path: &Path,
     document: &Document<'_>,
+    mut lost: Vec<Entry>,
     options: ReadOptions,
 ) -> Result<Subject, ExchangeError> {
     let mut subject = Subject::default();
@@ -50,7 +52,8 @@ pub(in crate::store::exchange) fn read_document(
     let images = Images::in_folder(path.parent().unwrap_or(Path::new(".")), &options.loading);
     for shader in shaders(document.root_element()) {
         match read_surface(&shader, &images) {
-            Ok((surface, losses)) => {
+            Ok((surface, mut losses)) => {
+                losses.append(&mut lost);
                 let (material, losses) = exact_or_shown(&surface, losses, &shader, &options);
                 subject.materials.push(material);
                 subject.losses.push(losses);
@@ -84,14 +87,17 @@ fn exact_or_shown(
 ) -> (MaterialSettings, Vec<Entry>) {
     let text = shader.material.and_then(|material| material.attribute(CARRIER));
     if let Some(mut exact) = text.filter(|_| !options.is_plain).and_then(carried::from_text) {
-        let shown = shown_by(&exact, shader.node.has_tag_name("standard_surface")).map(|shown| Surface {
+        let shown = shown_by(&exact, shader.node.tag_name().name()).map(|shown| Surface {
             textures: surface.textures,
             normal_strength: surface.normal_strength,
             coat_normal_strength: surface.coat_normal_strength,
             ..shown
         });
         let mut textures = surface.user_textures.iter();
-        let has_all = textures.all(|(target, _)| exact.user_textures.get(target).is_some());
+        let has_all = textures.all(|(target, found)| {
+            let own = exact.user_textures.get(target);
+            own.is_some_and(|own| std::iter::zip(own.picture_from_uv(), found.picture_from_uv()).all(are_near))
+        });
         if has_all && shown.is_some_and(|shown| is_near(&shown, surface)) {
             // The copies lie beside the file, wherever that is now.
             for (target, texture) in surface.user_textures.iter() {
@@ -126,15 +132,19 @@ fn reflects_exactly(shader: Node<'_, '_>) -> bool {
     exact.iter().any(|kind| shader.has_tag_name(*kind))
 }
 
-/// What a file would show into which a material is written.
-fn shown_by(material: &MaterialSettings, is_standard: bool) -> Option<Surface> {
-    // Of textures the factors are compared.
-    let plain = MaterialSettings {
-        user_textures: UserTextures::default(),
-        ..material.clone()
+/// What a surface of this kind would show into which a material is written.
+fn shown_by(material: &MaterialSettings, kind: &str) -> Option<Surface> {
+    let form = match kind {
+        "standard_surface" => STANDARD_SURFACE,
+        "UsdPreviewSurface" => PREVIEW_SURFACE,
+        _ => OPEN_PBR,
     };
-    let written = write(&Subject::of(plain), Path::new(""), is_standard).ok()?;
-    let text = String::from_utf8(written.bytes).ok()?;
+    // Of textures the factors are compared.
+    let nodes = form.nodes(&Surface::of(material).0, "surface", &[]);
+    let text = format!(
+        "<materialx colorspace=\"lin_rec709\">{}</materialx>",
+        nodes.iter().map(network::Node::element).collect::<String>()
+    );
     let document = Document::parse(&text).ok()?;
     let shader = shaders(document.root_element()).into_iter().next()?;
     let (nowhere, loading) = (Path::new(""), Loading::default());
@@ -144,13 +154,16 @@ fn shown_by(material: &MaterialSettings, is_standard: bool) -> Option<Surface> {
 }
 
 /// Whether two surfaces are the same but for the digits that other programs write.
-pub(in crate::store::exchange) fn is_near(a: &Surface, b: &Surface) -> bool {
-    let near = |a: f32, b: f32| (a - b).abs() <= 1e-4 * (1.0 + a.abs());
-    let are_near = |parameter: &Parameter| match (parameter.rgb(a), parameter.rgb(b)) {
-        (Some(a), Some(b)) => (0..3).all(|i| near(a[i], b[i])),
+fn is_near(a: &Surface, b: &Surface) -> bool {
+    let is_same = |parameter: &Parameter| match (parameter.rgb(a), parameter.rgb(b)) {
+        (Some(a), Some(b)) => std::iter::zip(a, b).all(are_near),
         _ => parameter.get(a) == parameter.get(b),
     };
-    PARAMETERS.iter().all(are_near)
+    PARAMETERS.iter().all(is_same)
+}
+
+fn are_near((a, b): (f32, f32)) -> bool {
+    (a - b).abs() <= 1e-4 * (1.0 + a.abs())
 }
 
 fn read_surface(shader: &Shader<'_>, images: &Images<'_>) -> Result<(Surface, Vec<Entry>), String> {
@@ -200,12 +213,10 @@ fn read_inputs(
         let Some(name) = input.attribute("name") else { continue };
         let row = inputs.row(name);
         if let Some(direction) = row.filter(|row| row.default.is_empty()) {
-            if let Some((target, found, strength)) = normal_map(input, shader, images)
-                && let Some(texture) = found.texture
-            {
+            if let Some((found, normals)) = normal_map(input, shader, images) {
                 let told = |note| Entry::approximated(name, note, None);
                 inputs.losses.extend(found.notes.into_iter().map(told));
-                textures.push((target, texture, strength));
+                textures.push(normals);
                 continue;
             }
             let is_connected = ["nodegraph", "nodename", "interfacename"]
@@ -236,15 +247,16 @@ fn read_inputs(
                 }
                 // One channel as a colour is its mean.
                 let is_whole = |texture: &UserTexture| texture.channel == TextureChannel::Auto;
-                let target = row.and_then(target_of).filter(|_| !found.is_computed);
-                let is_taken =
-                    |texture: &UserTexture| is_whole(texture) || target.is_some_and(|target| !target.is_color());
-                if let (Some(target), Some(mut texture)) = (target, found.texture.filter(is_taken)) {
+                let opacity = (name == "opacity" && is_presence(shader.node)).then_some(TextureTarget::Opacity);
+                let target = row.and_then(target_of).or(opacity);
+                let is_taken = |(texture, _): &(UserTexture, _)| {
+                    is_whole(texture) || target.is_some_and(|target| !target.is_color())
+                };
+                if let (Some(target), Some((mut texture, factor))) = (target, found.as_texture().filter(is_taken)) {
                     if target.is_number() && is_whole(&texture) {
                         texture.channel = TextureChannel::Red;
                     }
-                    let [r, g, b, _] = found.factor;
-                    inputs.set(name, [r, g, b]);
+                    inputs.set(name, factor);
                     textures.push((target, texture, 1.0));
                     continue;
                 }
@@ -271,12 +283,18 @@ fn read_inputs(
     (turn_deg, textures)
 }
 
-/// The image on an input for normals, what that bends, and how steeply.
+/// Whether what the opacity of a UsdPreviewSurface does not stop goes straight through.
+fn is_presence(surface: Node<'_, '_>) -> bool {
+    let mode = child(surface, "opacityMode").and_then(|input| input.attribute("value"));
+    matches!(mode, Some("presence" | "1"))
+}
+
+/// An input for normals: what is said of it, and what its image bends, and how steeply.
 fn normal_map<'a>(
     input: Node<'a, 'a>,
     shader: &Shader<'a>,
     images: &Images<'_>,
-) -> Option<(TextureTarget, Worth, f32)> {
+) -> Option<(Worth, (TextureTarget, UserTexture, f32))> {
     let target = normal_target(input.attribute("name")?)?;
     let node = source_of(input)?.node;
     let (place, strength) = match node.tag_name().name() {
@@ -288,7 +306,9 @@ fn normal_map<'a>(
         _ => return None,
     };
     let strength = strength.map_or(Some(1.0), |text| text.trim().parse().ok())?;
-    Some((target, worth(place, &shader.within, images).ok()??, strength))
+    let found = worth(place, &shader.within, images).ok()??;
+    let (texture, steepness) = found.as_normals(place != input)?;
+    Some((found, (target, texture, steepness * strength)))
 }
 
 /// What an input for normals bends.

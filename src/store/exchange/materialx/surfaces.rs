@@ -89,7 +89,7 @@ fn open_pbr(inputs: &mut Inputs, s: &mut Surface) {
 }
 
 /// The numbers that OpenPBR's inputs have for a surface.
-pub fn as_open_pbr(surface: &Surface) -> Surface {
+pub(super) fn as_open_pbr(surface: &Surface) -> Surface {
     let mut s = surface.clone();
     s.counter_coat();
     s.specular_color = s.tint();
@@ -206,19 +206,24 @@ fn usd_preview_surface(inputs: &mut Inputs, s: &mut Surface) {
     s.emission_strength = 1.0;
 }
 
+/// The numbers that the inputs of a UsdPreviewSurface have for a surface.
+pub(super) fn as_preview_surface(surface: &Surface) -> Surface {
+    Surface {
+        emission_color: surface.emission(),
+        // Refraction is thin there: what opacity does not stop is seen behind.
+        transmission_weight: surface.opacity * (1.0 - surface.transmission_weight * (1.0 - surface.metalness)),
+        ..surface.clone()
+    }
+}
+
 fn surface_unlit(_inputs: &mut Inputs, s: &mut Surface) {
     (s.base_color, s.specular_weight) = ([0.0; 3], 0.0);
 }
 
-/// The inputs of a table with a surface's numbers for them.
-pub fn written(
-    rows: &'static [FileParameter],
-    shown: &Surface,
-) -> impl Iterator<Item = (&'static FileParameter, [f32; 3])> {
-    rows.iter().filter(|row| !row.default.is_empty()).filter_map(|row| {
-        let value = parameter(row.keys()[0]).ok()?.rgb(shown)?;
-        Some((row, value.map(|x| x * row.per)))
-    })
+/// The number or colour that an input has for a surface; none where it has none.
+pub(super) fn written(row: &FileParameter, shown: &Surface) -> Option<[f32; 3]> {
+    let parameter = parameter(row.keys()[0]).ok().filter(|_| !row.default.is_empty());
+    Some(parameter?.rgb(shown)?.map(|x| x * row.per))
 }
 
 /// OpenPBR's roughness and anisotropy a: α's along and across are r² √(2/(1 + (1 − a)²)) and (1 − a) times that.

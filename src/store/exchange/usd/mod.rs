@@ -7,31 +7,59 @@ use std::{collections::HashMap, fmt::Write as _, path::Path};
 
 use super::{
     ExchangeError, ReadOptions, Subject, Written, carried,
-    materialx::{self, OPEN_PBR, as_open_pbr, written},
+    materialx::{Node, OPEN_PBR, PREVIEW_SURFACE, Worth},
     report::Entry,
     shown,
-    surface::{Surface, Takes},
-    xml::{self, identifier, numbers},
+    surface::Takes,
+    textures::{Files, carry},
+    xml::identifier,
 };
-use crate::{document::MaterialSettings, import::FileParameter};
+use crate::document::MaterialSettings;
 
-pub fn write(subject: &Subject, _path: &Path) -> Result<Written, ExchangeError> {
-    let (mut taken, mut reports) = (HashMap::new(), Vec::new());
+pub fn write(subject: &Subject, path: &Path) -> Result<Written, ExchangeError> {
+    let (mut taken, mut reports, mut files) = (HashMap::new(), Vec::new(), Files::of(path));
     let mut text = "#usda 1.0\n(\n    defaultPrim = \"Materials\"\n    metersPerUnit = 1\n    upAxis = \"Y\"\n)\n\n\
                         def Scope \"Materials\"\n{\n"
         .to_owned();
     for material in &subject.materials {
         let (surface, mut report) = shown(material, &Takes::OPEN_PBR);
-        report.entries.splice(0..0, surface.rotation_loss());
         let preview = "UsdPreviewSurface, beside OpenPBR";
         let detail = "without anisotropy, refraction, tints and the coat's index";
         report.entries.push(Entry::approximated(preview, detail, None));
+        let has_place = |target| OPEN_PBR.takes(target);
+        let textures = carry(material, &mut report, (has_place, true), |_, texture| {
+            files.copy(&texture.file)
+        });
         let name = identifier(&material.name, &mut taken);
-        text += &prim(&surface, &name, &carried::line(material));
+        let place = format!("/Materials/{name}");
+        let nodes = [(PREVIEW_SURFACE, "Preview"), (OPEN_PBR, "OpenPbr")]
+            .into_iter()
+            .flat_map(|(form, name)| form.nodes(&surface, name, &textures));
+        let shaders: String = nodes.map(|node| shader(&node, &place)).collect();
+        let (mark, exact, label) = (carried::MARK, quoted(&carried::line(material)), quoted(&surface.name));
+        let _ = write!(
+            text,
+            "    def Material \"{name}\" (
+        customData = {{
+            string {mark} = {exact}
+        }}
+    )
+    {{
+        uniform string ui:displayName = {label}
+        token outputs:surface.connect = <{place}/Preview.outputs:surface>
+        token outputs:mtlx:surface.connect = <{place}/OpenPbr.outputs:out>
+
+{shaders}    }}
+
+"
+        );
         reports.push(report);
     }
     text += "}\n";
-    Ok(Written::text(text, reports))
+    Ok(Written {
+        beside: files.contents,
+        ..Written::text(text, reports)
+    })
 }
 
 /// Says that the program was built without.
@@ -72,19 +100,25 @@ pub fn read(path: &Path, options: ReadOptions) -> Result<Subject, ExchangeError>
 }
 
 /// The exact parameters of a material, and a document of MaterialX with what that lacks.
+#[cfg(feature = "usd")]
 type Found = (Option<MaterialSettings>, Option<(String, Vec<Entry>)>);
 
 #[cfg(feature = "usd")]
 fn materials(path: &Path, bytes: Vec<u8>, options: &ReadOptions) -> Result<Vec<Found>, ExchangeError> {
     let found = |stage: &_| {
         let materials = stage::materials(stage).into_iter();
-        let read = materials.map(|material| (stage::exact(&material), stage::document(&material)));
+        let read = materials.map(|material| {
+            let exact = stage::exact(&material);
+            let document = stage::document(&material, exact.as_ref());
+            (exact, document)
+        });
         read.collect()
     };
     let found = crate::import::usd::with_stage(path, bytes, &options.loading, found);
     found.map_err(|reason| wrong(path, reason))
 }
 
+#[cfg(feature = "usd")]
 fn wrong(path: &Path, reason: String) -> ExchangeError {
     ExchangeError::Contents {
         path: path.to_owned(),
@@ -93,38 +127,19 @@ fn wrong(path: &Path, reason: String) -> ExchangeError {
     }
 }
 
-/// The exact parameters where they are there and show what the surface shows; else what that shows.
+/// What its surface shows, or the exact parameters where that is what they show or there is none.
 #[cfg(feature = "usd")]
 fn read_material(
     (exact, document): Found,
     path: &Path,
     options: &ReadOptions,
 ) -> Result<Option<(MaterialSettings, Vec<Entry>)>, ExchangeError> {
-    let Some((text, mut losses)) = document else {
+    let Some((text, lost)) = document else {
         return Ok(exact.map(|exact| (exact, Vec::new())));
     };
-    let exact = exact.filter(|_| !options.is_plain);
-    let document = xml::parse(&text).map_err(|reason| wrong(path, reason))?;
-    let plain = ReadOptions {
-        is_plain: true,
-        ..options.clone()
-    };
-    let mut shown = materialx::read_document(path, &document, plain.clone())?;
-    losses.extend(shown.losses.pop().unwrap_or_default());
-    let Some(shown) = shown.materials.pop() else {
-        return Ok(None);
-    };
-    if let Some(exact) = exact {
-        let written = write(&Subject::of(exact.clone()), path)?;
-        let ours = materials(path, written.bytes, &plain)?.into_iter().next();
-        let ours = ours.and_then(|ours| read_material(ours, path, &plain).ok()?);
-        if ours.is_some_and(|(ours, _)| materialx::is_near(&ours, &shown)) {
-            return Ok(Some((exact, Vec::new())));
-        }
-        let why = "the file was changed since it was exported";
-        losses.insert(0, Entry::dropped("the exact parameters", why));
-    }
-    Ok(Some((shown, losses)))
+    let document = super::xml::parse(&text).map_err(|reason| wrong(path, reason))?;
+    let mut shown = super::materialx::read_document(path, &document, lost, options.clone())?;
+    Ok(shown.materials.pop().zip(shown.losses.pop()))
 }
 
 /// Text in quotation marks.
@@ -135,70 +150,57 @@ fn quoted(text: &str) -> String {
     )
 }
 
-fn prim(surface: &Surface, name: &str, exact: &str) -> String {
-    let (mark, exact, label) = (carried::MARK, quoted(exact), quoted(&surface.name));
-    let preview = shader(
-        "Preview",
-        "UsdPreviewSurface",
-        "token outputs:surface",
-        &preview(surface),
-    );
-    let id = "ND_open_pbr_surface_surfaceshader";
-    let open_pbr = shader("OpenPbr", id, "token outputs:out", &open_pbr(surface));
-    format!(
-        "    def Material \"{name}\" (
-        customData = {{
-            string {mark} = {exact}
-        }}
-    )
-    {{
-        uniform string ui:displayName = {label}
-        token outputs:surface.connect = </Materials/{name}/Preview.outputs:surface>
-        token outputs:mtlx:surface.connect = </Materials/{name}/OpenPbr.outputs:out>
-
-{preview}{open_pbr}    }}
-
-"
-    )
-}
-
-fn shader(name: &str, id: &str, output: &str, inputs: &[(impl AsRef<str>, String)]) -> String {
+/// A node as a shader of the material at `place`.
+fn shader(node: &Node, place: &str) -> String {
+    let Node { name, kind, output, .. } = node;
+    let [of, result] = [type_of(output[0]), output[1]];
+    let id = match *kind {
+        "UsdPrimvarReader" => "UsdPrimvarReader_float2".to_owned(),
+        kind if kind.starts_with("Usd") => kind.to_owned(),
+        // By what it takes.
+        "extract" => format!("ND_extract_{}", node.inputs[0].1),
+        "normalmap" => "ND_normalmap_float".to_owned(),
+        kind => format!("ND_{kind}_{}", output[0]),
+    };
     let mut text = format!("        def Shader \"{name}\"\n        {{\n            uniform token info:id = \"{id}\"\n");
-    for (input, value) in inputs {
-        let (kind, input) = input.as_ref().split_once(' ').unwrap_or(("float", input.as_ref()));
-        let _ = writeln!(text, "            {kind} inputs:{input} = {value}");
+    for (name, of, worth) in &node.inputs {
+        let kind = type_of(of);
+        let _ = match worth {
+            Worth::Of(node, output) => writeln!(
+                text,
+                "            {kind} inputs:{name}.connect = <{place}/{node}.outputs:{output}>"
+            ),
+            Worth::File(file, space) => {
+                let space = match *space {
+                    "srgb_texture" => " (colorSpace = \"srgb_texture\")",
+                    _ => "",
+                };
+                writeln!(text, "            {kind} inputs:{name} = @./{file}@{space}")
+            }
+            Worth::Value(value) => {
+                let value = match kind {
+                    "string" | "token" => quoted(value),
+                    _ if value.contains(',') => format!("({value})"),
+                    _ => value.clone(),
+                };
+                writeln!(text, "            {kind} inputs:{name} = {value}")
+            }
+        };
     }
-    let _ = write!(text, "            {output}\n        }}\n\n");
+    let _ = write!(text, "            {of} outputs:{result}\n        }}\n\n");
     text
 }
 
-fn color(value: [f32; 3]) -> String {
-    format!("({})", numbers(&value))
-}
-
-fn preview(surface: &Surface) -> Vec<(&'static str, String)> {
-    // Refraction is thin there: what opacity does not stop is seen behind.
-    let opacity = surface.opacity * (1.0 - surface.transmission_weight * (1.0 - surface.metalness));
-    vec![
-        ("color3f diffuseColor", color(surface.base_color)),
-        ("color3f emissiveColor", color(surface.emission())),
-        ("int useSpecularWorkflow", "0".to_owned()),
-        ("float metallic", surface.metalness.to_string()),
-        ("float roughness", surface.roughness.to_string()),
-        ("float clearcoat", surface.coat_weight.to_string()),
-        ("float clearcoatRoughness", surface.coat_roughness.to_string()),
-        ("float opacity", opacity.to_string()),
-        ("float ior", surface.ior.to_string()),
-    ]
-}
-
-fn open_pbr(surface: &Surface) -> Vec<(String, String)> {
-    let typed = |(row, value): (&FileParameter, [f32; 3])| {
-        if row.is_list() {
-            (format!("color3f {}", row.place), color(value))
-        } else {
-            (format!("float {}", row.place), value[0].to_string())
-        }
-    };
-    written(OPEN_PBR, &as_open_pbr(surface)).map(typed).collect()
+/// USD's name of a type of MaterialX.
+fn type_of(kind: &str) -> &str {
+    match kind {
+        "color3" => "color3f",
+        "color4" => "color4f",
+        "vector2" => "float2",
+        "vector3" => "float3",
+        "integer" => "int",
+        "filename" => "asset",
+        "surfaceshader" => "token",
+        kind => kind,
+    }
 }

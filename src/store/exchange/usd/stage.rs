@@ -88,8 +88,8 @@ fn shaders_below(prim: &Prim, found: &mut Vec<Prim>) {
     }
 }
 
-/// A material as a document of MaterialX, and what of it is not read; none if it has no surface.
-pub(super) fn document(material: &Prim) -> Option<(String, Vec<Entry>)> {
+/// A material as a document of MaterialX with the exact parameters, and what of it is not read; none if it has no surface.
+pub(super) fn document(material: &Prim, exact: Option<&MaterialSettings>) -> Option<(String, Vec<Entry>)> {
     let of_output = |output: &&str| match end(material.attribute(*output))? {
         End::Node(shader, _) => Some(shader),
         End::Value(_) => None,
@@ -114,9 +114,11 @@ pub(super) fn document(material: &Prim) -> Option<(String, Vec<Entry>)> {
     let name = material.path().name().unwrap_or_default();
     let label = text_of(&material.attribute("ui:displayName"));
     let (name, label) = (escaped(name), escaped(label.as_deref().unwrap_or(name)));
+    let exact = exact.map(|exact| format!(" {}=\"{}\"", carried::MARK, escaped(&carried::line(exact))));
+    let exact = exact.unwrap_or_default();
     let text = format!(
         "<materialx version=\"1.39\" colorspace=\"lin_rec709\">{nodes}<surfacematerial name=\"{name}\" type=\"material\" \
-         uiname=\"{label}\"><input name=\"surfaceshader\" type=\"surfaceshader\" nodename=\"{}\"/></surfacematerial></materialx>",
+         uiname=\"{label}\"{exact}><input name=\"surfaceshader\" type=\"surfaceshader\" nodename=\"{}\"/></surfacematerial></materialx>",
         escaped(surface.path().as_str())
     );
     Some((text, losses))

@@ -5,7 +5,7 @@ use std::path::Path;
 use crate::scene::texture::SHIPPED;
 
 macro_rules! maps {
-    ($($file:literal)*) => { &[$(($file, include_bytes!(concat!("../../../assets/maps/", $file)))),*] };
+    ($($file:literal)*) => { &[$(($file, include_bytes!(concat!("../../assets/maps/", $file)))),*] };
 }
 
 /// The maps by their names; `scripts/maps` makes them.
@@ -15,7 +15,7 @@ const MAPS: &[(&str, &[u8])] = maps! {
 };
 
 /// The contents of a shipped map; `None` for files.
-pub fn shipped(path: &Path) -> Option<&'static [u8]> {
+pub(super) fn shipped(path: &Path) -> Option<&'static [u8]> {
     let name = path.strip_prefix(SHIPPED).ok()?.to_str()?;
     MAPS.iter().find(|(map, _)| *map == name).map(|(_, bytes)| *bytes)
 }

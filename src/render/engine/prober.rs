@@ -2,6 +2,7 @@
 
 use bytemuck::Pod;
 
+use super::{EngineChoice, choice::device_for_functions};
 use crate::{
     cpu::probe as cpu,
     gpu::{GpuError, probe::Probe},
@@ -9,9 +10,13 @@ use crate::{
         DrawAnswer, DrawQuestion, FresnelQuestion, LobeAnswer, LobeQuestion, MaterialQuestion, NO_HIT, ProbeScene,
         RandomQuestion, RayAnswer, RayQuestion,
     },
+    job::scatter::{ScatterCloud, ScatterRequest},
     optics::vector::Vec3,
-    render::{EngineChoice, device_for_functions},
+    parallel,
 };
+
+/// Samples of a cloud that are asked for at a time: some 24 MB of questions.
+const SAMPLES: usize = 1 << 18;
 
 /// Answers with the functions that the chosen engine renders with.
 pub enum Prober {
@@ -37,6 +42,24 @@ impl Prober {
             }
         }
         Ok(answers)
+    }
+
+    /// Draws the samples of a cloud.
+    pub fn scatter(&self, request: &ScatterRequest) -> Result<ScatterCloud, GpuError> {
+        let scene = ProbeScene {
+            tables: &request.model.table,
+            ..ProbeScene::default()
+        };
+        let mut cloud = ScatterCloud::default();
+        cloud.samples.reserve_exact(request.count as usize);
+        for first in (0..request.count).step_by(SAMPLES) {
+            let count = SAMPLES.min((request.count - first) as usize);
+            let questions = parallel::map(count, |i| request.question(first + i as u32));
+            self.lobes(&scene, &questions)?
+                .iter()
+                .for_each(|drawn| cloud.add(drawn));
+        }
+        Ok(cloud)
     }
 
     /// Answers of the CPU's function, or of a shader's entry point.
