@@ -75,5 +75,5 @@ pub fn instruction_set() -> &'static str {
 fn available() -> String {
     let is_here = |choice: &&Instructions| **choice != Instructions::Auto && choice.level().is_some();
     let names = Instructions::ALL.iter().filter(is_here).map(|choice| choice.name());
-    names.collect::<Vec<_>>().join(" or ")
+    crate::named::joined(names, " or ")
 }

@@ -25,8 +25,17 @@ pub trait Named: Copy + PartialEq + Sized + 'static {
 
 /// The choice of this name, or what there is to choose from.
 pub fn parse<T: Named>(name: &str) -> Result<T, String> {
-    let names = || T::ALL.iter().map(|choice| choice.name()).collect::<Vec<_>>().join(", ");
-    T::by_name(name).ok_or_else(|| format!("expected one of {}", names()))
+    T::by_name(name).ok_or_else(|| format!("expected one of {}", names::<T>()))
+}
+
+pub fn names<T: Named>() -> String {
+    joined(T::ALL.iter().map(|choice| choice.name()), ", ")
+}
+
+/// The items as one text, with `between` between them.
+pub fn joined<T: ToString>(items: impl IntoIterator<Item = T>, between: &str) -> String {
+    let texts: Vec<String> = items.into_iter().map(|item| item.to_string()).collect();
+    texts.join(between)
 }
 
 /// Declares an enum of choices, one line each: `Variant = number, "name", "Label", "Help.";`. The number is the one that

@@ -135,9 +135,10 @@ fn hit_catcher(position: vec3f, direction: vec3f, state: RandomState) -> Catcher
     let is_transparent = background.a <= 0.0;
     let shown = select(background.rgb, WHITE, is_transparent);
     let is_lit = select(vec3f(), WHITE, light > vec3f());
-    let reflected = light * material_at(globals.catcher_slot).base_color + (1.0 - is_lit);
+    let reflected = light * material_at(globals.catcher_slot).base_color;
+    let kept = select(vec3f(), 1.0 / reflected, reflected > vec3f());
     return CatcherHit(
-        select(CATCHER_SHADOW, CATCHER_SHADOW_ALPHA, is_transparent), shown * is_lit / reflected, shown * (1.0 - is_lit), 1.0,
+        select(CATCHER_SHADOW, CATCHER_SHADOW_ALPHA, is_transparent), shown * kept, shown * (1.0 - is_lit), 1.0,
     );
 }
 

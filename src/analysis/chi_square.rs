@@ -57,16 +57,6 @@ impl PolarGrid {
         }
     }
 
-    /// Rings of equal solid angle.
-    pub fn equal_area(frame: Frame<f64>, rings: usize, sectors: usize) -> Self {
-        let end = |ring: usize| (1.0 - 2.0 * ring as f64 / rings as f64).acos();
-        Self {
-            frame,
-            ring_ends_rad: (1..=rings).map(end).collect(),
-            sectors,
-        }
-    }
-
     /// Number of cells.
     pub fn cells(&self) -> usize {
         self.ring_ends_rad.len() * self.sectors

@@ -6,7 +6,7 @@ use crate::job::film::Image;
 /// Share of the pixels within the automatic scale.
 const SHARE_WITHIN: f64 = 0.99;
 /// Smallest automatic scale: below is rounding.
-const SCALE_MIN: f32 = 1e-4;
+const SCALE_MIN: f32 = 0.0001;
 /// Colours of no difference and of the largest ones, where A or B is brighter; sRGB.
 const NEUTRAL: [f32; 3] = [44.0, 44.0, 44.0];
 const A_BRIGHTER: [f32; 3] = [84.0, 170.0, 255.0];

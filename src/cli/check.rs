@@ -51,7 +51,7 @@ fn part_of_name(text: &str) -> Result<String, String> {
         Some(near) => format!("in no name of a hard case; did you mean {near}?"),
         None => format!(
             "in no name of a hard case; there are {}",
-            names().collect::<Vec<_>>().join(", ")
+            crate::named::joined(names(), ", ")
         ),
     })
 }

@@ -9,6 +9,7 @@ use super::{answer::Destination, answer::write_json, names, parse::check_writabl
 use crate::{
     console::message,
     document::ImportLobe,
+    named::joined,
     plot::{PictureSheet, plot_file},
     render::looks::compared,
     scene::path_text::path_text,
@@ -48,21 +49,19 @@ pub struct ConvertArguments {
 /// The formats, for the help.
 fn formats_help() -> String {
     let line = |format: &Registered| {
-        let endings: Vec<String> = format.extensions.iter().map(|ending| format!(".{ending}")).collect();
         let ways = if format.is_read() { "in, out" } else { "out" };
         format!(
             "  {:<16} {:<12} {ways:<8} {}",
             format.name,
-            endings.join(" "),
+            joined(format.extensions.iter().map(|ending| format!(".{ending}")), " "),
             format.help
         )
     };
-    let lines: Vec<String> = FORMATS.iter().map(line).collect();
-    format!("Formats:\n{}", lines.join("\n"))
+    format!("Formats:\n{}", joined(FORMATS.iter().map(line), "\n"))
 }
 
 fn format(text: &str) -> Result<&'static Registered, String> {
-    let known = || FORMATS.iter().map(|format| format.name).collect::<Vec<_>>().join(", ");
+    let known = || joined(FORMATS.iter().map(|format| format.name), ", ");
     exchange::by_name(text).ok_or_else(|| format!("expected one of {}", known()))
 }
 

@@ -141,12 +141,8 @@ fn print_match(found: &LookMatch) {
     line("after", &found.after);
     output!("R        {}", found.after.model.roughness);
     if let Some(curve) = &found.curve {
-        let points: Vec<String> = curve
-            .points()
-            .iter()
-            .map(|[xi, distance]| format!("{xi}:{distance}"))
-            .collect();
-        output!("curve    {}", points.join(","));
+        let points = curve.points().iter().map(|[xi, distance]| format!("{xi}:{distance}"));
+        output!("curve    {}", crate::named::joined(points, ","));
     }
     if let Some(colors) = &found.colors {
         let text = |color: Vec3<f64>| color.to_f64().map(|x| format!("{x:.4}")).join(",");

@@ -139,14 +139,13 @@ fn words_of(light: &AreaLight) -> impl Iterator<Item = &'static Parameter<AreaLi
 }
 
 fn expected(light: &AreaLight) -> String {
-    let words: Vec<_> = words_of(light).map(Parameter::word).collect();
     let shapes = match light.shape {
         AreaLightShape::Spot | AreaLightShape::Sun => "",
         _ => "triangle, disc, sphere, ",
     };
     format!(
         "give {shapes}#rrggbb, a temperature such as 3200K, or WORD=VALUE with one of {}, temperature, power, group{}",
-        words.join(", "),
+        crate::named::joined(words_of(light).map(Parameter::word), ", "),
         if light.is_sphere() { ", profile" } else { "" }
     )
 }

@@ -123,7 +123,7 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
     material.ggx_roughness = settings.ggx_roughness(roughness);
     material.fuzz_roughness = material.fuzz_roughness.max(FUZZ_ROUGHNESS_MIN as f32);
     material.film_path = film_path(settings.film_thickness * factor(On::FilmThickness));
-    let has_film = settings.has_film() && material.film_weight * material.film_path.x > 0.0;
+    let has_film = settings.has_film() && material.film_weight.min(material.film_path.x) > 0.0;
     material.has_film = u32::from(has_film);
     if has_film && settings.film_bands && f64::from(material.film_path.z * material.film_ior) > UNBANDED_PHASE {
         material.flags |= FILM_BANDS;

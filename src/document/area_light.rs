@@ -15,7 +15,7 @@ use crate::{
 /// How far away a sun is, bounding radii: its light is parallel to a hundredth of a degree.
 pub const SUN_DISTANCE: f64 = 1e4;
 /// The narrowest ramp of a spot's edge, in the cosine.
-const RAMP_MIN: f64 = 1e-4;
+const RAMP_MIN: f64 = 0.0001;
 
 with_defaults! {
     /// A surface that shines and is seen by the camera like anything else: with the same radiance to both sides, or into a cone

@@ -19,7 +19,7 @@ pub enum SettingError {
 }
 
 /// See [`Document::check`].
-pub(super) fn check(document: &Document) -> Result<(), SettingError> {
+pub fn check(document: &Document) -> Result<(), SettingError> {
     for setting in SETTINGS.iter() {
         setting.check(&setting.get(document))?;
     }

@@ -7,7 +7,7 @@ use crate::named::{named, with_defaults};
 use crate::scene::ground::{Cyclorama, Ground};
 
 /// The least albedo of a shadow catcher, whose light is known by what it reflects.
-const CATCHER_ALBEDO_MIN: f32 = 1e-3;
+const CATCHER_ALBEDO_MIN: f32 = 0.001;
 
 with_defaults! {
     /// What the ground is, where there is one. Its colour stands beside it. Lengths are in bounding radii of the model.

@@ -185,7 +185,7 @@ fn bookmark(camera: &ModelCamera, model: &Model) -> Bookmark {
             position: Some(position.to_array()),
             fov_deg,
             projection,
-            roll_deg: if roll_deg.abs() < 1e-4 { 0.0 } else { roll_deg },
+            roll_deg: if roll_deg.abs() < 0.0001 { 0.0 } else { roll_deg },
             ..CameraSettings::default()
         },
     }

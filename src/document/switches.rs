@@ -86,7 +86,7 @@ pub enum SwitchError {
 
 fn names(chosen: fn(EffectId) -> bool) -> String {
     let chosen = EffectId::ALL.iter().filter(|effect| chosen(**effect));
-    chosen.map(|effect| effect.name()).collect::<Vec<_>>().join(", ")
+    crate::named::joined(chosen.map(|effect| effect.name()), ", ")
 }
 
 /// `auto`; `all`, needed or not; the names of the effects to keep, with commas between, all others that can be removed

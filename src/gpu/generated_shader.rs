@@ -168,7 +168,7 @@ fn constants() -> String {
     let vector = |[a, b]: [f64; 2]| format!("vec2f({a:?}, {b:?})");
     let nodes = [GAUSS_6.as_slice(), &GAUSS_12, &GAUSS_20].concat();
     let count = nodes.len();
-    let nodes = nodes.into_iter().map(vector).collect::<Vec<_>>().join(", ");
+    let nodes = crate::named::joined(nodes.into_iter().map(vector), ", ");
     text += &format!("const GAUSS: array<vec2f, {count}> = array<vec2f, {count}>({nodes});\n");
     text + &format!("const RANGE_MAX: vec2f = {};\n", vector(RANGE_MAX))
 }

@@ -33,7 +33,7 @@ enum UsedMesh {
 }
 
 /// The model so far, of nodes that share a mesh where they have the same key.
-pub(crate) struct Assembly<'a, K> {
+pub struct Assembly<'a, K> {
     path: &'a Path,
     loading: &'a Loading,
     /// Nodes still to come with each mesh, and what was read of it for them.
@@ -165,7 +165,7 @@ fn can_be_inverted(transform: DMat4) -> bool {
 }
 
 /// A camera that looks along −Z of its node, with +Y up.
-pub(crate) fn camera_at(name: &str, world_from_node: DMat4, lens: ModelLens) -> Option<ModelCamera> {
+pub fn camera_at(name: &str, world_from_node: DMat4, lens: ModelLens) -> Option<ModelCamera> {
     let forward = world_from_node.transform_vector3(DVec3::NEG_Z).try_normalize()?;
     let up = world_from_node
         .transform_vector3(DVec3::Y)
@@ -180,7 +180,7 @@ pub(crate) fn camera_at(name: &str, world_from_node: DMat4, lens: ModelLens) -> 
 }
 
 /// A light that shines along a direction of its node.
-pub(crate) fn light_at(
+pub fn light_at(
     (name, kind): (&str, LightKind),
     world_from_node: DMat4,
     direction: DVec3,

@@ -26,7 +26,7 @@ const PACKED_MOST: u64 = 500;
 
 /// The files that a model may name, and its import.
 #[derive(Debug)]
-pub(super) struct Files {
+pub struct Files {
     place: Place,
     /// Files that were given with the model.
     given: Vec<PathBuf>,
@@ -36,7 +36,7 @@ pub(super) struct Files {
 
 /// State of one import, shared by all its files and clones.
 #[derive(Clone, Debug)]
-pub(super) struct Import {
+pub struct Import {
     /// Files that were asked for, by the names that they have on the disk.
     pub asked: Seen,
     /// Memory budget of the files and images together.
@@ -62,7 +62,7 @@ impl Import {
 
 /// Files that were asked for, shared with who wants to know.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Seen(Arc<Mutex<Vec<PathBuf>>>);
+pub struct Seen(Arc<Mutex<Vec<PathBuf>>>);
 
 impl Seen {
     /// Notes a file, once.
@@ -232,8 +232,13 @@ fn is_called(path: &Path, name: &str) -> bool {
     known.is_some_and(|known| text_or_latin_1(known).eq_ignore_ascii_case(name))
 }
 
+/// The little-endian number at a place.
+pub fn u32_at(bytes: &[u8], at: usize) -> Option<u32> {
+    bytes.get(at..)?.first_chunk().copied().map(u32::from_le_bytes)
+}
+
 /// Text of bytes in UTF-8, or else in Latin-1, where every byte is a character.
-pub(super) fn text_or_latin_1(bytes: &[u8]) -> Cow<'_, str> {
+pub fn text_or_latin_1(bytes: &[u8]) -> Cow<'_, str> {
     match std::str::from_utf8(bytes) {
         Ok(text) => text.into(),
         Err(_) => bytes.iter().map(|&byte| char::from(byte)).collect::<String>().into(),

@@ -16,7 +16,7 @@ const BYTES_MAX: u64 = 16 << 20;
 
 /// Why a light profile can't be read.
 #[derive(Debug, thiserror::Error)]
-#[error("{}: {reason}", path.display())]
+#[error("{path}: {reason}")]
 pub struct LightProfileError {
     path: PathBuf,
     reason: String,

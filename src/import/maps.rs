@@ -16,10 +16,10 @@ use crate::{
 type Channel = (usize, fn([u8; 4]) -> u8);
 
 /// A texture of a target; the number that its texel stands for if it is no colour.
-pub(super) type Part = (TextureTarget, TextureRef, fn([u8; 4]) -> u8);
+pub type Part = (TextureTarget, TextureRef, fn([u8; 4]) -> u8);
 
 /// The images that materials have asked for so far.
-pub(super) struct Maps<'a> {
+pub struct Maps<'a> {
     files: &'a Files,
     side_max: u32,
     /// Textures by name, and whether they hold colours; `None` if they can't be read.
@@ -60,9 +60,9 @@ impl<'a> Maps<'a> {
         let budget = &self.files.import.budget;
         let scaled = bytes.and_then(|bytes| {
             let name = name.to_owned();
-            let scaled = Encoded { name, bytes }.texture(is_color, self.side_max, budget)?;
-            let taken = budget.take(scaled.texture.bytes() as u64);
-            taken.map_err(|over| over.to_string()).map(|()| scaled)
+            Encoded { name, bytes }
+                .texture(is_color, self.side_max, budget)?
+                .within(budget)
         });
         let texture = match scaled {
             Ok(scaled) => {
@@ -211,12 +211,12 @@ impl<'a> Maps<'a> {
 }
 
 /// The mean of red, green and blue.
-pub(super) fn grey([red, green, blue, _]: [u8; 4]) -> u8 {
+pub fn grey([red, green, blue, _]: [u8; 4]) -> u8 {
     ((u32::from(red) + u32::from(green) + u32::from(blue)) / 3) as u8
 }
 
 /// The opacity of a mask's texels: its alpha if it has one, else its grey.
-pub(super) fn opacity_of(mask: &Texture) -> fn([u8; 4]) -> u8 {
+pub fn opacity_of(mask: &Texture) -> fn([u8; 4]) -> u8 {
     match mask.is_translucent() {
         true => |texel| texel[3],
         false => grey,
@@ -224,7 +224,7 @@ pub(super) fn opacity_of(mask: &Texture) -> fn([u8; 4]) -> u8 {
 }
 
 /// Whether a map is grey everywhere: of heights, not of normals.
-pub(super) fn holds_heights(texture: &Texture) -> bool {
+pub fn holds_heights(texture: &Texture) -> bool {
     let grey = |texel: &[u8; 4]| texel[0].abs_diff(texel[2]) < 8 && texel[1].abs_diff(texel[2]) < 8;
     texture.rgba8.as_chunks::<4>().0.iter().all(grey)
 }

@@ -10,8 +10,14 @@ use crate::scene::report::{Fate, ImportReport};
 const WORK_MAX: usize = 1 << 31;
 const FEW: usize = 256;
 
+/// Twice a polygon's area, along its normal.
+pub fn doubled_area(places: &[DVec3]) -> DVec3 {
+    let from_first = |w: &[DVec3]| (w[0] - places[0]).cross(w[1] - places[0]);
+    places.windows(2).map(from_first).sum()
+}
+
 /// Cuts polygons, with memory that it keeps for the next one.
-pub(super) struct Polygons {
+pub struct Polygons {
     earcut: Earcut<f64>,
     flat: Vec<[f64; 2]>,
     found: Vec<u32>,

@@ -15,7 +15,7 @@ const MAPS: &[(&str, &[u8])] = maps! {
 };
 
 /// The contents of a shipped map; `None` for files.
-pub(super) fn shipped(path: &Path) -> Option<&'static [u8]> {
+pub fn shipped(path: &Path) -> Option<&'static [u8]> {
     let name = path.strip_prefix(SHIPPED).ok()?.to_str()?;
     MAPS.iter().find(|(map, _)| *map == name).map(|(_, bytes)| *bytes)
 }

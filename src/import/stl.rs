@@ -20,7 +20,7 @@ const TRIANGLE: usize = 50;
 const LINES: usize = 1 << 14;
 
 /// Loads the contents of an STL file. Its Z is upwards, as in most programs that write them: it is turned to our +Y.
-pub(super) fn load(path: &Path, bytes: &[u8], loading: &Loading) -> Result<Model, ModelError> {
+pub fn load(path: &Path, bytes: &[u8], loading: &Loading) -> Result<Model, ModelError> {
     let mut report = ImportReport::default();
     let read = if is_text(bytes) {
         of_text(&text_or_latin_1(bytes), loading, &mut report)?

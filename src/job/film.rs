@@ -385,7 +385,7 @@ impl Film {
     pub fn difference_in_sigma(&self, other: &Film) -> f64 {
         let (a, b): (f64, f64) = (self.luminance().iter().sum(), other.luminance().iter().sum());
         let variance: f64 = self.variance_of_mean().iter().chain(&other.variance_of_mean()).sum();
-        (a - b) / (variance + (1e-4 * a).powi(2)).sqrt()
+        (a - b) / (variance + (0.0001 * a).powi(2)).sqrt()
     }
 
     /// Variance of the mean luminance of each pixel as if its samples were independent; infinite below two samples.

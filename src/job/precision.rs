@@ -3,9 +3,9 @@
 use crate::{named::named, optics::vector::Vec3};
 
 /// Largest error of f32 against f64, relative as in [`relative_error`], that counts as none.
-pub const ERROR_BOUND: f64 = 1e-3;
+pub const ERROR_BOUND: f64 = 0.001;
 /// Values below this part of a white Lambertian's count as if they were that large.
-const SMALL: f64 = 1e-3 / std::f64::consts::PI;
+const SMALL: f64 = 0.001 / std::f64::consts::PI;
 /// Relative change of the value, in f64, by one rounding of the direction from which a point counts as singular.
 const SINGULAR: f64 = 2e-5;
 

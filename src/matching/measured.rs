@@ -50,7 +50,7 @@ pub fn base_albedo(merl: &Merl, view_angle_rad: f64) -> Option<f64> {
     let fit = |roughness: f64| fit_curve(&target, roughness, DISTANCE_MAX, Horizon::Mirror, true);
     let residual = |roughness: f64| fit(roughness).map_or(1.0, |fit| fit.residual);
     let best = fit(roughness::minimum(ROUGHNESS_RANGE, 12, 0.02, &residual).roughness)?;
-    (best.lobe_albedo > 1e-4 * best.base_albedo).then_some(best.base_albedo)
+    (best.lobe_albedo > 0.0001 * best.base_albedo).then_some(best.base_albedo)
 }
 
 /// The colours beside a lobe of settled shape: least squares in each channel, not negative.
@@ -66,7 +66,7 @@ pub fn colors(merl: &Merl, view_angle_rad: f64, model: &LobeModel) -> Colors {
     for (wi, solid_angle) in &grid.points {
         let columns = [lobe(*wi), base(*wi)];
         let value = merl.reflectance(wo, *wi) * NORMAL.dot(*wi).max(0.0);
-        let weight = solid_angle / (value.luminance() + 1e-3);
+        let weight = solid_angle / (value.luminance() + 0.001);
         for i in 0..2 {
             right[i] += value * (weight * columns[i]);
             for j in 0..2 {

@@ -27,15 +27,15 @@ const DISTANCES_MAX: [f64; 6] = [1.0, 1.5, 2.5, 4.0, 7.0, 12.0];
 /// Steps of the scan for R, and relative accuracy of its search.
 const CURVE_SCAN: (usize, f64) = (9, 0.02);
 /// The same once the curve is settled.
-const FINAL_SCAN: (usize, f64) = (4, 1e-3);
+const FINAL_SCAN: (usize, f64) = (4, 0.001);
 /// The scan for the roughness of a stretched lobe.
-const STRETCHED_SCAN: (usize, f64) = (16, 1e-3);
+const STRETCHED_SCAN: (usize, f64) = (16, 0.001);
 /// Largest R of a fitted curve: at 1 every curve gives the same lobe.
 const ROUGHNESS_MAX: f64 = 0.99;
 /// Roughness that a measured material is compared at before the fit.
 const ROUGHNESS_BEFORE: f64 = 0.3;
 /// Share of the largest value below which a target is not shown.
-const SHOWN_FLOOR: f64 = 1e-3;
+const SHOWN_FLOOR: f64 = 0.001;
 /// Largest angle of the view, degrees.
 pub const VIEW_ANGLE_MAX_DEG: f64 = 85.0;
 

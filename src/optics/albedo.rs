@@ -140,7 +140,7 @@ fn node_means(
     let frame = frame_from_normal(normal);
     let eta = if is_inside { material.ior_ahead(true) } else { 1.0 };
     // At exactly grazing the microfacet lobes are 0/0.
-    let cosine = node_cosine(node, eta).max(1e-3);
+    let cosine = node_cosine(node, eta).max(0.001);
     let is_stretched = shape.anisotropy != 0.0;
     let mut sums = [0.0; 4];
     for i in 0..samples {
@@ -227,54 +227,53 @@ fn fresnel_basis(terms: &FresnelTerms<f64>, cosine: f64) -> [f64; 4] {
     ]
 }
 
-/// The four integrals at a `place` as in [`albedo_lookup`] and a roughness, linear between the nodes.
-#[inline(always)]
-pub fn rough_albedo_lookup<T: Real>(tables: &[f32], albedo_table: u32, place: T, roughness: T) -> [T; 4] {
-    mapped!([0, 1, 2, 3], |number| {
-        rough_albedo_number(tables, albedo_table, number, [place, roughness])
-    })
-}
-
-/// One of them.
-#[inline(always)]
-pub fn rough_albedo_number<T: Real>(tables: &[f32], albedo_table: u32, number: usize, [place, roughness]: [T; 2]) -> T {
-    let [step, beyond_step] = node_below(roughness, ROUGHNESS_NODES);
-    let [low, beyond] = node_below(place, ALBEDO_NODES);
-    let first = step * T::from_f64(ALBEDO_NODES as f64) + low;
-    let table = &tables[albedo_table as usize..];
-    let row = &table[NODE_LENGTH * ALBEDO_NODES..];
-    let [a, b, c, d] = mapped!([table, &table[NODE_LENGTH..], row, &row[NODE_LENGTH..]], |nodes| {
-        look_up_number(nodes, number, first)
-    });
-    let (smooth, rough) = (a + (b - a) * beyond, c + (d - c) * beyond);
-    smooth + (rough - smooth) * beyond_step
-}
-
-/// The albedo under a Fresnel factor, from its integrals, and the film's of the dielectric where they are known.
-#[inline(always)]
-pub fn rough_albedo<T: Real>(terms: &FresnelTerms<T>, integrals: [T; 4], film: Option<Vec3<T>>) -> Vec3<T> {
-    let [first, constant, grazing, edge] = integrals;
-    if !terms.has_parts() {
-        return vec3(first, constant, grazing) * terms.tint * terms.weight;
+inlined! {
+    /// The four integrals at a `place` as in [`albedo_lookup`] and a roughness, linear between the nodes.
+    pub fn rough_albedo_lookup<T: Real>(tables: &[f32], albedo_table: u32, place: T, roughness: T) -> [T; 4] {
+        mapped!([0, 1, 2, 3], |number| {
+            rough_albedo_number(tables, albedo_table, number, [place, roughness])
+        })
     }
-    let dielectric = if terms.model == Fresnel::Schlick {
-        terms.tint * fresnel_f0(terms.ior) * constant + Vec3::splat(grazing)
-    } else {
-        terms.tint * first
-    };
-    let darkening = edge_darkening(terms.metal_f0, terms.edge_tint) * edge;
-    let metal = terms.metal_f0 * constant + Vec3::splat(grazing);
-    let mut metal = (metal - darkening).at_least_zero() * terms.metal_tint;
-    let mut dielectric = dielectric * terms.weight;
-    if terms.has_film {
-        // No table has every thickness or metal: the lobe counts as its mean facet.
-        let [cosine, energy] = mean_facet([constant, grazing]);
-        let change = match film {
-            Some(change) => change * terms.tint.map(|x| x.min(T::ONE)) * terms.weight,
-            None => film_change_of_dielectric(terms, cosine) * energy,
+
+    /// One of them.
+    pub fn rough_albedo_number<T: Real>(tables: &[f32], albedo_table: u32, number: usize, [place, roughness]: [T; 2]) -> T {
+        let [step, beyond_step] = node_below(roughness, ROUGHNESS_NODES);
+        let [low, beyond] = node_below(place, ALBEDO_NODES);
+        let first = step * T::from_f64(ALBEDO_NODES as f64) + low;
+        let table = &tables[albedo_table as usize..];
+        let row = &table[NODE_LENGTH * ALBEDO_NODES..];
+        let [a, b, c, d] = mapped!([table, &table[NODE_LENGTH..], row, &row[NODE_LENGTH..]], |nodes| {
+            look_up_number(nodes, number, first)
+        });
+        let (smooth, rough) = (a + (b - a) * beyond, c + (d - c) * beyond);
+        smooth + (rough - smooth) * beyond_step
+    }
+
+    /// The albedo under a Fresnel factor, from its integrals, and the film's of the dielectric where they are known.
+    pub fn rough_albedo<T: Real>(terms: &FresnelTerms<T>, integrals: [T; 4], film: Option<Vec3<T>>) -> Vec3<T> {
+        let [first, constant, grazing, edge] = integrals;
+        if !terms.has_parts() {
+            return vec3(first, constant, grazing) * terms.tint * terms.weight;
+        }
+        let dielectric = if terms.model == Fresnel::Schlick {
+            terms.tint * fresnel_f0(terms.ior) * constant + Vec3::splat(grazing)
+        } else {
+            terms.tint * first
         };
-        dielectric = (dielectric + change).at_least_zero();
-        metal = (metal + film_change_of_metal(terms, cosine) * energy).at_least_zero();
+        let darkening = edge_darkening(terms.metal_f0, terms.edge_tint) * edge;
+        let metal = terms.metal_f0 * constant + Vec3::splat(grazing);
+        let mut metal = (metal - darkening).at_least_zero() * terms.metal_tint;
+        let mut dielectric = dielectric * terms.weight;
+        if terms.has_film {
+            // No table has every thickness or metal: the lobe counts as its mean facet.
+            let [cosine, energy] = mean_facet([constant, grazing]);
+            let change = match film {
+                Some(change) => change * terms.tint.map(|x| x.min(T::ONE)) * terms.weight,
+                None => film_change_of_dielectric(terms, cosine) * energy,
+            };
+            dielectric = (dielectric + change).at_least_zero();
+            metal = (metal + film_change_of_metal(terms, cosine) * energy).at_least_zero();
+        }
+        dielectric.mix(metal, terms.metalness)
     }
-    dielectric.mix(metal, terms.metalness)
 }

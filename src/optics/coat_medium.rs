@@ -7,7 +7,7 @@ use crate::optics::prelude::*;
 /// Most of the light that a coat reflects back inside: at 1 nothing would get out.
 pub const INNER_MAX: f64 = 0.9999;
 /// Least cosine of the way through a coat.
-pub const WAY_COSINE_MIN: f64 = 1e-3;
+pub const WAY_COSINE_MIN: f64 = 0.001;
 /// Least colour of a coat, whose powers are finite.
 pub const COLOR_MIN: f64 = 1e-12;
 

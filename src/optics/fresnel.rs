@@ -71,50 +71,50 @@ pub fn weighted_ior(ior: f64, weight: f64) -> f64 {
     (1.0 + root) / (1.0 - root)
 }
 
-/// Fresnel's equations for unpolarised light at a boundary of two dielectrics. `cosine` in [0, 1] on the incident side,
-/// `ior` = index behind the boundary over index before it; 1 under total internal reflection.
-#[inline(always)]
-pub fn fresnel_dielectric<T: Real>(cosine: T, ior: T) -> T {
-    let c = cosine.clamp(T::ZERO, T::ONE);
-    // ior² cos²θt, not negative unless the reflection is total.
-    let square = refracted_square(c, ior);
-    let g = square.safe_sqrt();
-    let perpendicular = (c - g) / (c + g).max(T::from_f64(1e-12));
-    let parallel = (ior * ior * c - g) / (ior * ior * c + g).max(T::from_f64(1e-12));
-    let half = T::HALF;
-    let value = half * (perpendicular * perpendicular + parallel * parallel);
-    T::select(square.below_zero(), T::ONE, value)
-}
+inlined! {
+    /// Fresnel's equations for unpolarised light at a boundary of two dielectrics. `cosine` in [0, 1] on the incident side,
+    /// `ior` = index behind the boundary over index before it; 1 under total internal reflection.
+    pub fn fresnel_dielectric<T: Real>(cosine: T, ior: T) -> T {
+        let c = cosine.clamp(T::ZERO, T::ONE);
+        // ior² cos²θt, not negative unless the reflection is total.
+        let square = refracted_square(c, ior);
+        let g = square.safe_sqrt();
+        let perpendicular = (c - g) / (c + g).max(T::from_f64(1e-12));
+        let parallel = (ior * ior * c - g) / (ior * ior * c + g).max(T::from_f64(1e-12));
+        let half = T::HALF;
+        let value = half * (perpendicular * perpendicular + parallel * parallel);
+        T::select(square.below_zero(), T::ONE, value)
+    }
 
-/// Fresnel's equations for unpolarised light on a conductor with complex index `eta` + i `k` against vacuum.
-/// Source: Lagarde, "Memo on Fresnel equations" (2013).
-#[inline(always)]
-pub fn fresnel_conductor<T: Real>(cosine: T, eta: T, k: T) -> T {
-    let c = cosine.clamp(T::ZERO, T::ONE);
-    let cos2 = c * c;
-    let sin2 = (T::ONE - c) * (T::ONE + c);
-    // (a + ib)² = t0 + iu, written without cancellation, at grazing for η near 1 and head-on for η near 0. Its magnitude
-    // without squares, which would overflow.
-    let half = T::HALF;
-    let real = T::select(cos2.less(half), refracted_square(c, eta), eta * eta - sin2);
-    let t0 = real - k * k;
-    let u = T::TWO * eta * k;
-    let largest = t0.abs().max(u).max(T::from_f64(1e-30));
-    let (x, y) = (t0 / largest, u / largest);
-    let a2_plus_b2 = largest * (x * x + y * y).sqrt();
-    let leg = (T::HALF * (a2_plus_b2 + t0.abs())).sqrt();
-    let a = T::select(t0.below_zero(), T::HALF * u / leg.max(T::from_f64(1e-30)), leg);
-    let t1 = a2_plus_b2 + cos2;
-    let t2 = T::TWO * a * c;
-    // Avoids 0/0: no wave behind the surface, or normal incidence, where both polarisations are alike.
-    let tiny = T::from_f64(1e-37);
-    let perpendicular = (t1 - t2) / (t1 + t2).max(tiny);
-    let t3 = cos2 * a2_plus_b2 + sin2 * sin2;
-    let t4 = t2 * sin2;
-    let sum = t3 + t4;
-    let ratio = T::select(sum.less(tiny), T::ONE, (t3 - t4) / sum.max(tiny));
-    let parallel = perpendicular * ratio;
-    (half * (perpendicular + parallel)).clamp(T::ZERO, T::ONE)
+    /// Fresnel's equations for unpolarised light on a conductor with complex index `eta` + i `k` against vacuum.
+    /// Source: Lagarde, "Memo on Fresnel equations" (2013).
+    pub fn fresnel_conductor<T: Real>(cosine: T, eta: T, k: T) -> T {
+        let c = cosine.clamp(T::ZERO, T::ONE);
+        let cos2 = c * c;
+        let sin2 = (T::ONE - c) * (T::ONE + c);
+        // (a + ib)² = t0 + iu, written without cancellation, at grazing for η near 1 and head-on for η near 0. Its magnitude
+        // without squares, which would overflow.
+        let half = T::HALF;
+        let real = T::select(cos2.less(half), refracted_square(c, eta), eta * eta - sin2);
+        let t0 = real - k * k;
+        let u = T::TWO * eta * k;
+        let largest = t0.abs().max(u).max(T::from_f64(1e-30));
+        let (x, y) = (t0 / largest, u / largest);
+        let a2_plus_b2 = largest * (x * x + y * y).sqrt();
+        let leg = (T::HALF * (a2_plus_b2 + t0.abs())).sqrt();
+        let a = T::select(t0.below_zero(), T::HALF * u / leg.max(T::from_f64(1e-30)), leg);
+        let t1 = a2_plus_b2 + cos2;
+        let t2 = T::TWO * a * c;
+        // Avoids 0/0: no wave behind the surface, or normal incidence, where both polarisations are alike.
+        let tiny = T::from_f64(1e-37);
+        let perpendicular = (t1 - t2) / (t1 + t2).max(tiny);
+        let t3 = cos2 * a2_plus_b2 + sin2 * sin2;
+        let t4 = t2 * sin2;
+        let sum = t3 + t4;
+        let ratio = T::select(sum.less(tiny), T::ONE, (t3 - t4) / sum.max(tiny));
+        let parallel = perpendicular * ratio;
+        (half * (perpendicular + parallel)).clamp(T::ZERO, T::ONE)
+    }
 }
 
 inlined! {

@@ -552,15 +552,15 @@ impl<T: Real> Surface<T> {
         }
     }
 
-    /// The cosine between the view and the shading normal.
-    #[inline(always)]
-    pub fn view_cosine(&self) -> T {
-        self.frame.normal.dot(self.wo)
-    }
+    inlined! {
+        /// The cosine between the view and the shading normal.
+        pub fn view_cosine(&self) -> T {
+            self.frame.normal.dot(self.wo)
+        }
 
-    /// Lanes where the viewer is within a solid that light passes through.
-    #[inline(always)]
-    pub fn is_within(&self, material: &Material<T>) -> T::Mask {
-        self.is_inside & material.transmits()
+        /// Lanes where the viewer is within a solid that light passes through.
+        pub fn is_within(&self, material: &Material<T>) -> T::Mask {
+            self.is_inside & material.transmits()
+        }
     }
 }

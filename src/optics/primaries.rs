@@ -58,7 +58,7 @@ impl Chromaticities {
     /// If its primaries span no space, or green is dark.
     pub fn luminances(&self) -> Result<[f64; 3], NoSpace> {
         let [_, luminances, _] = self.xyz_from_rgb()?;
-        (luminances[1] > 1e-3).then_some(luminances).ok_or(NoSpace)
+        (luminances[1] > 0.001).then_some(luminances).ok_or(NoSpace)
     }
 
     /// Whether its primaries are these to four digits.
@@ -76,9 +76,7 @@ impl Chromaticities {
         let columns = self.primaries.map(|[x, y]| [x, y, 1.0 - x - y]);
         let unscaled: Matrix = std::array::from_fn(|i| std::array::from_fn(|j| columns[j][i]));
         let strengths = transformed(&inverse(&unscaled)?, white_xyz(self.white));
-        let matrix = unscaled.map(|row| std::array::from_fn(|j| row[j] * strengths[j]));
-        let is_finite = matrix.iter().flatten().all(|x| x.is_finite());
-        is_finite.then_some(matrix).ok_or(NoSpace)
+        finite(unscaled.map(|row| std::array::from_fn(|j| row[j] * strengths[j])))
     }
 }
 
@@ -86,7 +84,7 @@ impl Chromaticities {
 const XYZ: [[f64; 2]; 3] = [[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]];
 
 fn is_near(a: [f64; 2], b: [f64; 2]) -> bool {
-    std::iter::zip(a, b).all(|(a, b)| (a - b).abs() < 1e-4)
+    std::iter::zip(a, b).all(|(a, b)| (a - b).abs() < 0.0001)
 }
 
 /// The white of luminance 1 at a place of the diagram.
@@ -113,7 +111,10 @@ pub fn rec709_adapted(from: [f64; 3], to: [f64; 3]) -> Matrix {
 fn adaptation(cones_from: &Matrix, from: [f64; 3], to: [f64; 3]) -> Result<Matrix, NoSpace> {
     let [from, to] = [from, to].map(|white| transformed(cones_from, white));
     let gain: Matrix = std::array::from_fn(|i| std::array::from_fn(|j| if i == j { to[i] / from[i] } else { 0.0 }));
-    let matrix = product(&inverse(cones_from)?, &product(&gain, cones_from));
+    finite(product(&inverse(cones_from)?, &product(&gain, cones_from)))
+}
+
+fn finite(matrix: Matrix) -> Result<Matrix, NoSpace> {
     let is_finite = matrix.iter().flatten().all(|x| x.is_finite());
     is_finite.then_some(matrix).ok_or(NoSpace)
 }

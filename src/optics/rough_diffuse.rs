@@ -11,7 +11,7 @@ pub const HEAD_ON: f64 = 0.5 - 2.0 * FRAC_1_PI / 3.0;
 /// What it gives to the mean over all views.
 pub const MEAN: f64 = 2.0 / 3.0 - 28.0 * FRAC_1_PI / 15.0;
 /// The least cosine at which directions are compared.
-pub const ROUGH_COSINE_MIN: f64 = 1e-4;
+pub const ROUGH_COSINE_MIN: f64 = 0.0001;
 
 inlined! {
     /// The value over that of Lambert's model with the same albedo, linear RGB: from the cosines of both directions to the normal

@@ -200,7 +200,7 @@ pub fn scattering_table(material: &Material<f64>, samples: u32) -> Vec<f32> {
         };
         let place = node as f64 / (ALBEDO_NODES - 1) as f64;
         // At exactly grazing the microfacet lobes are 0/0.
-        let cosine = (place * place).max(1e-4);
+        let cosine = (place * place).max(0.0001);
         let means = in_lanes(
             level(),
             Kept {

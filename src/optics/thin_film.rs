@@ -145,7 +145,7 @@ inlined! {
         let channel = |path: T, behind: Behind<T>| {
             vectorized!(T, {
                 let phase = path * height;
-                let is_small = phase.less(T::from_f64(1e-4));
+                let is_small = phase.less(T::from_f64(0.0001));
                 let across = path * T::select(is_small, T::ONE, phase.sin() / phase.max(T::from_f64(FILM_TINY)));
                 let along = phase.cos();
                 let mut damping = T::ONE;

@@ -115,7 +115,7 @@ pub struct Drawing {
 
 /// A plot could not be drawn.
 #[derive(Debug, thiserror::Error)]
-#[error("{}: the plot could not be drawn: {reason}", path.display())]
+#[error("{path}: the plot could not be drawn: {reason}")]
 pub struct PlotError {
     path: PathBuf,
     reason: String,

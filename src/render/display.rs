@@ -17,7 +17,7 @@ use super::lens;
 pub const MIDDLE_GREY: f64 = 0.18;
 
 /// Lower bound of luminances for automatic exposure.
-const LUMINANCE_MIN: f64 = 1e-4;
+const LUMINANCE_MIN: f64 = 0.0001;
 
 /// The factor on radiance. The automatic one brings the geometric mean of the luminance to middle grey (Reinhard et al.
 /// 2002), weighed by the pixels' opacity.

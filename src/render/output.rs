@@ -21,7 +21,7 @@ use crate::{
 #[derive(Debug, thiserror::Error)]
 pub enum OutputError {
     /// The extension is not that of a format that can be written.
-    #[error("{}: images are written as .png, .exr or .hdr; give the file one of these endings", path.display())]
+    #[error("{path}: images are written as .png, .exr or .hdr; give the file one of these endings")]
     Format { path: PathBuf },
     /// The file could not be written.
     #[error(transparent)]

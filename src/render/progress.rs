@@ -16,7 +16,7 @@ pub enum StopReason {
 
 /// What to say of the share of the light that lies beyond the last bounce; nothing where there is little.
 pub fn beyond_bounces(cut: f64, bounces: u32) -> String {
-    const LEAST_TOLD: f64 = 5e-4;
+    const LEAST_TOLD: f64 = 0.0005;
     if cut < LEAST_TOLD {
         return String::new();
     }

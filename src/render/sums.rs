@@ -46,7 +46,7 @@ pub struct KeptFilm {
 #[derive(Debug, thiserror::Error)]
 pub enum SumsError {
     /// Not an image with sums that this version reads, or with sums that cannot be joined.
-    #[error("{}: {reason}", path.display())]
+    #[error("{path}: {reason}")]
     File { path: PathBuf, reason: String },
     /// The document inside is damaged.
     #[error(transparent)]
@@ -148,9 +148,13 @@ impl KeptFilm {
 
     /// Attributes of a file at `path`.
     pub fn attributes(&self, path: &Path) -> Result<LayerAttributes, FileError> {
-        let samples: Vec<String> = self.samples.iter().map(|[from, to]| format!("{from}-{to}")).collect();
+        let samples = self.samples.iter().map(|[from, to]| format!("{from}-{to}"));
         let document = document_text(path, &self.document)?;
-        let kept = format!("{}\n{}\n{document}", samples.join(","), self.world_units_per_unit);
+        let kept = format!(
+            "{}\n{}\n{document}",
+            crate::named::joined(samples, ","),
+            self.world_units_per_unit
+        );
         let mut attributes = LayerAttributes::default();
         attributes
             .other

@@ -22,7 +22,7 @@ use super::{
 use crate::{instructions, parallel};
 
 /// Gap between the lowest point and the ground, in bounding radii: enough that flat bottoms do not flicker.
-const GROUND_GAP: f64 = 1e-4;
+const GROUND_GAP: f64 = 0.0001;
 
 /// Geometry ready to trace, in units in which the model's bounding sphere about the origin has radius 1: a place p here
 /// is `center_world + world_units_per_unit · p` in the world (right-handed, +Y up). Models that differ in scale or

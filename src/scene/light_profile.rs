@@ -12,7 +12,7 @@ use crate::optics::prelude::*;
 /// Angles of one kind at most.
 pub const ANGLES_MAX: usize = 2048;
 /// Tolerance of angles, degrees.
-const ANGLE_ERROR_DEG: f32 = 1e-2;
+const ANGLE_ERROR_DEG: f32 = 0.01;
 /// Numbers of a table before its angles: axes, each followed by a count.
 pub const PROFILE_AXES_LENGTH: usize = 12;
 

@@ -17,7 +17,7 @@ use super::{
 /// Relative rounding error of a position: three products and sums, plus the box test and the transforms.
 pub const POSITION_ERROR: f64 = 1e-6;
 /// Smallest cosine between shading normal and view. A normal that leans further away is bent back.
-pub const VIEW_COSINE_MIN: f64 = 1e-3;
+pub const VIEW_COSINE_MIN: f64 = 0.001;
 
 /// Smallest cosine between geometric normal and the mirror direction about a normal from a texture.
 pub const MIRROR_HEIGHT_MIN: f64 = 0.01;

@@ -3,41 +3,44 @@
 use std::{io, path::Path, path::PathBuf};
 
 /// Files larger than this many bytes are taken for something else.
-pub(super) const SIZE_MAX: u64 = 16 << 20;
+pub const SIZE_MAX: u64 = 16 << 20;
 
 /// Why a material or project file cannot be read or written.
 #[derive(Debug, thiserror::Error)]
 pub enum FileError {
     /// The system can't read it.
-    #[error("{}: cannot be read: {source}; check the path and its permissions", path.display())]
+    #[error("{path}: cannot be read: {source}; check the path and its permissions")]
     Read { path: PathBuf, source: io::Error },
     /// Too large to be one.
-    #[error("{}: too large for a material or project (over {} MiB); choose another file", path.display(), SIZE_MAX >> 20)]
+    #[error("{path}: too large for a material or project (over {} MiB); choose another file", SIZE_MAX >> 20)]
     TooLarge { path: PathBuf },
     /// Not JSON, or cut short.
-    #[error("{}: not valid JSON: {reason}; correct it there or save the file again", path.display())]
+    #[error("{path}: not valid JSON: {reason}; correct it there or save the file again")]
     NotJson { path: PathBuf, reason: String },
     /// JSON of something else.
-    #[error("{}: not a Glossmith {expected}: it has no \"{mark}\" number; choose a file saved as {expected}", path.display())]
+    #[error("{path}: not a Glossmith {expected}: it has no \"{mark}\" number; choose a file saved as {expected}")]
     WrongKind {
         path: PathBuf,
         expected: &'static str,
         mark: &'static str,
     },
     /// An image that was not saved by Glossmith, or whose text another program left out.
-    #[error("{}: an image without a Glossmith document inside; open one that was saved here", path.display())]
+    #[error("{path}: an image without a Glossmith document inside; open one that was saved here")]
     NoDocument { path: PathBuf },
     /// Contents out of range, with what would be right.
-    #[error("{}: {reason}", path.display())]
+    #[error("{path}: {reason}")]
     Content { path: PathBuf, reason: String },
     /// It names files that lie elsewhere.
-    #[error("{}: names files outside of its surroundings, which are read only where that is allowed: {}; where you trust it, allow them (--allow-outside)", path.display(), list(files))]
+    #[error(
+        "{path}: names files outside of its surroundings, which are read only where that is allowed: {}; where you trust it, allow them (--allow-outside)",
+        list(files)
+    )]
     Outside { path: PathBuf, files: Vec<PathBuf> },
     /// No such preset, no such file.
     #[error("no material is called {name} and there is no such file; {hint}")]
     UnknownMaterial { name: String, hint: String },
     /// The file cannot be written.
-    #[error("{}: cannot be saved: {source}; check the folder's permissions and free space", path.display())]
+    #[error("{path}: cannot be saved: {source}; check the folder's permissions and free space")]
     Write { path: PathBuf, source: io::Error },
 }
 
@@ -62,6 +65,5 @@ impl FileError {
 }
 
 fn list(files: &[PathBuf]) -> String {
-    let names: Vec<String> = files.iter().map(|file| file.display().to_string()).collect();
-    names.join(", ")
+    crate::named::joined(files.iter().map(|file| file.display()), ", ")
 }

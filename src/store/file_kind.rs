@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::exchange::FORMATS;
 use crate::import::endings::{LIGHT, MODELS, PARTS, PICTURES, has_ending};
-use crate::named::named;
+use crate::named::{joined, named};
 
 named! {
     /// What a file holds, as its ending says.
@@ -82,8 +82,8 @@ pub fn may_hold_document(path: &Path) -> bool {
 /// What can be opened, for help and messages: each kind with its endings.
 pub fn what_is_opened() -> String {
     let one = |kind: &FileKind| {
-        let endings: Vec<String> = kind.endings().iter().map(|ending| format!(".{ending}")).collect();
-        format!("{} ({})", kind.label().to_lowercase(), endings.join(", "))
+        let endings = kind.endings().into_iter().map(|ending| format!(".{ending}"));
+        format!("{} ({})", kind.label().to_lowercase(), joined(endings, ", "))
     };
-    OPENED.iter().map(one).collect::<Vec<_>>().join(", ")
+    joined(OPENED.iter().map(one), ", ")
 }

@@ -19,7 +19,7 @@ use shiguredo_mp4::{
 };
 
 /// Whether this program can write them.
-pub(super) const IS_BUILT: bool = true;
+pub const IS_BUILT: bool = true;
 /// Mean bits per pixel of an MP4: enough that gradients of clean images show no banding.
 const BITS_PER_PIXEL: f64 = 0.25;
 /// Fewest rows and columns that the encoder takes.
@@ -30,7 +30,7 @@ const QUANTIZERS: [u8; 2] = [12, 26];
 const TICKS: u32 = 1000;
 
 /// Frames as H.264.
-pub(super) struct Mp4 {
+pub struct Mp4 {
     encoder: Encoder,
     fps: f64,
     /// What a player must know before the first frame.
@@ -41,7 +41,7 @@ pub(super) struct Mp4 {
 
 impl Mp4 {
     /// A video of so many columns, rows, and frames a second.
-    pub(super) fn new(size: [u32; 2], fps: f64) -> Result<Self, String> {
+    pub fn new(size: [u32; 2], fps: f64) -> Result<Self, String> {
         let [width, height] = even(size);
         if width < SIDE_MIN || height < SIDE_MIN {
             return Err(format!("an MP4's sides have at least {SIDE_MIN} pixels"));
@@ -68,7 +68,7 @@ impl Mp4 {
     }
 
     /// Adds a frame of that size.
-    pub(super) fn add(&mut self, size: [u32; 2], rgba: &[u8]) -> Result<(), String> {
+    pub fn add(&mut self, size: [u32; 2], rgba: &[u8]) -> Result<(), String> {
         let [width, height] = even(size).map(|side| side as usize);
         let rows = rgba.chunks_exact(4 * size[0] as usize).take(height);
         let rgb: Vec<u8> = rows
@@ -100,7 +100,7 @@ impl Mp4 {
     }
 
     /// The file.
-    pub(super) fn bytes(self) -> Result<Vec<u8>, String> {
+    pub fn bytes(self) -> Result<Vec<u8>, String> {
         let words = |error: shiguredo_mp4::mux::MuxError| error.to_string();
         let mut muxer = Mp4FileMuxer::with_options(Mp4FileMuxerOptions {
             // The index before the frames: a browser plays what it has of the file.

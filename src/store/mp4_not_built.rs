@@ -1,21 +1,21 @@
 //! In place of the MP4 encoder, where the program is built without the feature `video`.
 
 /// Whether this program can write them.
-pub(super) const IS_BUILT: bool = false;
+pub const IS_BUILT: bool = false;
 
 /// Frames as H.264: there are none.
-pub(super) enum Mp4 {}
+pub enum Mp4 {}
 
 impl Mp4 {
-    pub(super) fn new(_size: [u32; 2], _fps: f64) -> Result<Self, String> {
+    pub fn new(_size: [u32; 2], _fps: f64) -> Result<Self, String> {
         Err("this program was built without H.264".to_owned())
     }
 
-    pub(super) fn add(&mut self, _size: [u32; 2], _rgba: &[u8]) -> Result<(), String> {
+    pub fn add(&mut self, _size: [u32; 2], _rgba: &[u8]) -> Result<(), String> {
         match *self {}
     }
 
-    pub(super) fn bytes(self) -> Result<Vec<u8>, String> {
+    pub fn bytes(self) -> Result<Vec<u8>, String> {
         match self {}
     }
 }

@@ -17,12 +17,12 @@ use super::{FileError, Loaded, file};
 use crate::import::limits::Reach;
 
 /// The key under which the mark is kept.
-pub(super) const KEY: &str = "saved-by";
+pub const KEY: &str = "saved-by";
 /// The file of the user's key.
 const KEY_FILE: &str = "own-key";
 
 /// The mark of a file at `path` that names these files; none where all lie in its folder, or the system has no place for a key.
-pub(super) fn mark(path: &Path, named: &[PathBuf]) -> Option<String> {
+pub fn mark(path: &Path, named: &[PathBuf]) -> Option<String> {
     let mut away: Vec<PathBuf> = named.iter().filter(|named| leads_away(path, named)).cloned().collect();
     if away.is_empty() {
         return None;
@@ -37,13 +37,13 @@ pub(super) fn mark(path: &Path, named: &[PathBuf]) -> Option<String> {
 }
 
 /// Whether a name is written from the root, and counts for the mark.
-pub(super) fn leads_away(path: &Path, named: &Path) -> bool {
+pub fn leads_away(path: &Path, named: &Path) -> bool {
     !file::seen_from(path)(named).is_relative()
 }
 
 /// What was read from a file, with warnings of what it names that was allowed. A file from elsewhere that names what lies
 /// outside of its surroundings is refused; what was saved by this user is trusted.
-pub(super) fn within_reach<T>(
+pub fn within_reach<T>(
     path: &Path,
     bytes: &[u8],
     mut loaded: Loaded<T>,

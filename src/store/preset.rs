@@ -269,7 +269,7 @@ fn show_iridescence(values: &mut Map<String, Json>) {
         ("thin_film.ior", ior.unwrap_or(1.3).clamp(1.0, 3.0)),
         (
             "thin_film.thickness",
-            (1e-3 * thickness_nm.unwrap_or(400.0)).clamp(0.0, FILM_THICKNESS_MAX.into()),
+            (0.001 * thickness_nm.unwrap_or(400.0)).clamp(0.0, FILM_THICKNESS_MAX.into()),
         ),
     ];
     for (key, value) in film {

@@ -16,13 +16,13 @@ const OPAQUE_FROM: u8 = 128;
 #[derive(Debug, thiserror::Error)]
 pub enum VideoError {
     /// The extension is not that of a format that can be written.
-    #[error("{}: videos are written as .mp4 or .gif; give the file one of these endings", path.display())]
+    #[error("{path}: videos are written as .mp4 or .gif; give the file one of these endings")]
     Format { path: PathBuf },
     /// The program was built without the encoder.
-    #[error("{}: this program was built without H.264 (the feature `video`); give the file the ending .gif", path.display())]
+    #[error("{path}: this program was built without H.264 (the feature `video`); give the file the ending .gif")]
     NotBuilt { path: PathBuf },
     /// The encoder refuses, mostly for its size.
-    #[error("{}: no video of {width} × {height} pixels: {why}; choose another size", path.display())]
+    #[error("{path}: no video of {width} × {height} pixels: {why}; choose another size")]
     Encoder {
         path: PathBuf,
         width: u32,

@@ -24,7 +24,7 @@ use crate::{
 };
 
 /// Probability that a run fails by chance although everything is right, for each group of tests.
-const LEVEL: f64 = 1e-3;
+const LEVEL: f64 = 0.001;
 /// Roughness and view angles of the full grid.
 const ROUGHNESS: [f32; 7] = [0.02, 0.1, 0.3, 0.6, 0.9, 0.999, 1.0];
 const VIEW_ANGLES_DEG: [f32; 5] = [0.0, 30.0, 60.0, 80.0, 89.0];
@@ -342,7 +342,7 @@ fn energy(stop: &AtomicBool) -> Vec<Check> {
         let limit = if case.model.lobe.facets() == Facets::All {
             0.15
         } else {
-            2e-3
+            0.002
         };
         Check::new("energy", describe(case), "error", value, limit)
     };

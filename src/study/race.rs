@@ -149,7 +149,7 @@ impl Race {
         let least = resolved
             .map(|runner| runner.charted_bias(0.0))
             .filter(|bias| *bias > 0.0);
-        (0.5 * least.fold(f64::INFINITY, f64::min)).clamp(1e-5, 1e-2)
+        (0.5 * least.fold(f64::INFINITY, f64::min)).clamp(1e-5, 0.01)
     }
 }
 
@@ -286,7 +286,7 @@ fn run(lanes: &mut [Lane], options: &RaceOptions, steps: &mut Steps<'_, '_>) -> 
                 continue;
             }
             is_done = false;
-            let slice = options.slice.min(Duration::from_secs_f64(left.max(1e-3)));
+            let slice = options.slice.min(Duration::from_secs_f64(left.max(0.001)));
             lane.session.step(slice)?;
             // After each turn, not after each round: who stops it does not wait for the others' turns.
             steps.report(format!("Round {}", round + 1), share_of_all(lanes, options.seconds))?;
@@ -367,7 +367,7 @@ fn rerun(
         }
         // Short steps, so that the last one overshoots little.
         let left = progress.engine_seconds * (samples / progress.mean_samples.max(1e-9) - 1.0);
-        step = Duration::from_secs_f64(left.clamp(1e-3, 0.2));
+        step = Duration::from_secs_f64(left.clamp(0.001, 0.2));
     }
 }
 

@@ -16,9 +16,9 @@ use crate::analytic_scenes::{Case, cases};
 
 /// The most that a picture may be off, relative to its value: a fault of 0.5 % is 7.1 standard errors and [`ROUNDING`] then,
 /// which is seen with 99.9 %.
-const BOUND: f64 = 3e-3;
+const BOUND: f64 = 0.003;
 /// What f32, albedo tables and the picture's small angle may add to the noise, relative.
-const ROUNDING: f64 = 3e-4;
+const ROUNDING: f64 = 0.0003;
 /// The relative error at which adaptive renders stop: a pixel's, sixteen times that of the pixels' mean.
 const NOISE: f64 = 0.008;
 /// Standard errors within which a picture must lie: one in sixteen thousand falls outside by chance.

@@ -22,7 +22,7 @@ use crate::{
     analytic_lobes::lobes,
     analytic_media::media,
     lights::{corners, irradiance},
-    renders::{document, set},
+    renders::{adjust, document, set},
 };
 
 /// A row of the table.
@@ -429,8 +429,7 @@ fn rooms() -> Vec<Case> {
         [1.0 + 0.8 + 0.5 + 0.5; 3],
     )
     .with(|document| {
-        document.render.bounces = 3;
-        document.render.firefly_clamp = Some(0.5);
+        adjust(document, "render.bounces=3 render.firefly_clamp=0.5");
     });
     vec![
         inside(matt).by(BY_LOBE, 1024),

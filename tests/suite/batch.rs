@@ -36,7 +36,7 @@ fn all_combinations_are_rendered_once() {
         )
     };
     glossmith::store::save_material(&place.path("mine.json"), &PRESETS[2]).unwrap();
-    place.write("a.toml", text(3).as_bytes());
+    place.write("a.toml", text(3));
     let run = place.done("batch a.toml --engine cpu");
     let rows = lines(&run);
     let names: Vec<&str> = rows.iter().map(|row| row["picture"].as_str().unwrap()).collect();
@@ -54,7 +54,7 @@ fn all_combinations_are_rendered_once() {
     let again = outcomes(&place.done("batch a.toml --engine cpu"));
     assert!(again.values().all(|status| status == "kept"), "{again:?}");
     // What one setting changes concerns its pictures alone.
-    place.write("a.toml", text(4).as_bytes());
+    place.write("a.toml", text(4));
     let changed = outcomes(&place.done("batch a.toml --engine cpu"));
     assert_eq!(
         (changed["gold-few"].as_str(), changed["gold-more"].as_str()),
@@ -86,7 +86,7 @@ fn a_batch_that_was_killed_goes_on_where_it_was() {
     let place = Workplace::new();
     let text =
         format!("materials = [\"gold\", \"silver\", \"car-paint-red\"]\nframes = 2\nformats = [\"exr\"]\n{SMALL}");
-    place.write("a.toml", text.as_bytes());
+    place.write("a.toml", text);
     place.done("batch a.toml --engine cpu --folder whole");
     let mut child = Command::new(crate::program())
         .args(["batch", "a.toml", "--engine", "cpu"])
@@ -129,10 +129,7 @@ fn a_batch_that_was_killed_goes_on_where_it_was() {
 fn what_cannot_be_rendered_leaves_the_others_and_an_exit_code() {
     let place = Workplace::new();
     place.write("broken.json", b"{");
-    place.write(
-        "a.toml",
-        format!("materials = [\"gold\", \"broken.json\"]{SMALL}").as_bytes(),
-    );
+    place.write("a.toml", format!("materials = [\"gold\", \"broken.json\"]{SMALL}"));
     let run = place.run("batch a.toml --engine cpu");
     assert_eq!(run.code, Some(3), "{}", run.stderr);
     assert!(run.stderr.contains("1 of 2 images"), "{}", run.stderr);
@@ -143,17 +140,14 @@ fn what_cannot_be_rendered_leaves_the_others_and_an_exit_code() {
     );
     assert!(rows[1]["error"].as_str().unwrap().contains("broken.json"));
     assert!(place.read("pictures/contact-sheet.html").contains("missing"));
-    place.write("b.toml", format!("materials = [\"broken.json\"]{SMALL}").as_bytes());
+    place.write("b.toml", format!("materials = [\"broken.json\"]{SMALL}"));
     let run = place.run("batch b.toml --engine cpu");
     assert_eq!(run.code, Some(1), "{}", run.stderr);
     place.refused(1, "batch none.toml", &["none.toml"]);
     place.refused(1, "batch a.toml --pictures 2-3", &["--pictures 2-3", "2 only"]);
     place.refused(1, "batch a.toml --frame-range 2", &["a.toml", "frames"]);
     place.refused(2, "batch a.toml --slice 3/2", &["2/5"]);
-    place.write(
-        "d.toml",
-        format!("materials = [\"gold\"]\nframes = 2{SMALL}").as_bytes(),
-    );
+    place.write("d.toml", format!("materials = [\"gold\"]\nframes = 2{SMALL}"));
     place.refused(1, "batch d.toml --pictures 1 --frame-range 2", &["in common"]);
 }
 
@@ -174,7 +168,7 @@ fn what_is_wrong_in_a_batch_is_told_with_its_line() {
         ("frames = 2\nturn = \"all\"", 2, "`camera`, `model`"),
         ("materials = [\"gold\"]\nformats = [\"gif\"]", 2, "png, exr and hdr"),
     ] {
-        place.write("a.toml", text.as_bytes());
+        place.write("a.toml", text);
         place.refused(1, "batch a.toml", &[&format!("a.toml, line {line}: "), words]);
     }
     place.write("a.toml", b"[common]\nsamples = 4");

@@ -107,7 +107,7 @@ fn a_quick_run_measures_both_engines_and_can_be_compared() {
         row.value.median *= factor;
         row.value.quartiles = [row.value.median; 2];
     }
-    place.write("b.json", serde_json::to_string(&slower).unwrap().as_bytes());
+    place.write("b.json", serde_json::to_string(&slower).unwrap());
     let run = place.run("benchmark --compare a.json b.json --json c.json");
     assert_eq!(run.code, Some(0), "{}", run.stderr);
     assert!(
@@ -115,14 +115,14 @@ fn a_quick_run_measures_both_engines_and_can_be_compared() {
         "{}",
         run.stdout
     );
-    let compared: Value = serde_json::from_str(&place.read("c.json")).unwrap();
+    let compared: Value = place.json("c.json");
     let rows = compared["rows"].as_array().unwrap();
     assert!(
         !rows.is_empty() && rows.iter().all(|row| row["verdict"] != "better"),
         "{compared}"
     );
     slower.engines.clear();
-    place.write("b.json", serde_json::to_string(&slower).unwrap().as_bytes());
+    place.write("b.json", serde_json::to_string(&slower).unwrap());
     place.refused(1, "benchmark --compare a.json b.json", &["in common"]);
 }
 

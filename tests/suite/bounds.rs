@@ -32,10 +32,7 @@ fn elements_of_a_ply_file_without_properties_are_passed_over() {
 fn an_element_with_a_hundred_thousand_attributes_is_refused() {
     let place = Workplace::new();
     let attributes: String = (0..100_000).map(|number| format!(" a{number}=\"\"")).collect();
-    place.write(
-        "m.mtlx",
-        format!("<materialx version=\"1.39\"{attributes}/>").as_bytes(),
-    );
+    place.write("m.mtlx", format!("<materialx version=\"1.39\"{attributes}/>"));
     place.refused(1, "convert m.mtlx out.json", &["m.mtlx", "more than 1000 attributes"]);
 }
 
@@ -44,7 +41,7 @@ fn an_element_with_a_hundred_thousand_attributes_is_refused() {
 fn a_picture_of_a_slot_that_no_model_has_is_passed_over() {
     let place = Workplace::new();
     let text = json!({"glossmith-document": 1, "import": {"pictures": [{"slot": 65535, "file": "x.png"}]}});
-    place.write("p.json", text.to_string().as_bytes());
+    place.write("p.json", text.to_string());
     place.done("convert p.json out.json");
     assert!(place.path("out.json").metadata().unwrap().len() < 1 << 20);
 }

@@ -7,11 +7,14 @@ use glossmith::{
 };
 use serde_json::json;
 
-use super::gltf_builder::{Buffer, Folder, SQUARE};
-use super::renders::{document, render};
+use super::renders::{adjust, document, render};
+use super::{
+    cli_support::Workplace,
+    gltf_builder::{Buffer, SQUARE},
+};
 
 /// The file of a square in the xy plane of metal brushed at 45 degrees to the tangent, +X, with bitangents on one side of it.
-fn brushed(folder: &Folder, side: f32) -> ModelSource {
+fn brushed(folder: &Workplace, side: f32) -> ModelSource {
     let mut buffer = Buffer::default();
     let positions = buffer.floats(&SQUARE);
     let normals = buffer.floats(&[[0.0, 0.0, 1.0]; 4]);
@@ -47,7 +50,7 @@ fn shine(engine: EngineChoice, model: &ModelSource, front: f64, x: f64) -> f64 {
     }];
     (lit.camera.yaw_deg, lit.camera.pitch_deg) = (if front > 0.0 { 0.0 } else { 180.0 }, 0.0);
     (lit.camera.distance, lit.camera.fov_deg) = (Some(20.0), 3.0);
-    (lit.render.width, lit.render.height, lit.render.samples) = (16, 16, 64);
+    adjust(&mut lit, "render.width=16 render.height=16 render.samples=64");
     let film = render(engine, &lit);
     assert_eq!(film.dropped(), 0);
     film.luminance().iter().sum::<f64>() / 256.0
@@ -57,7 +60,7 @@ fn shine(engine: EngineChoice, model: &ModelSource, front: f64, x: f64) -> f64 {
 /// are mirror images. And a brushed sheet is brushed the same way on its back.
 #[test]
 fn the_rotation_is_towards_the_bitangent_on_both_faces() {
-    let folder = Folder::new();
+    let folder = Workplace::new();
     let [right, left] = [1.0, -1.0].map(|side| brushed(&folder, side));
     for engine in [EngineChoice::Cpu, EngineChoice::Gpu] {
         let along = shine(engine, &right, 1.0, 1.0);
@@ -75,10 +78,7 @@ fn the_rotation_is_towards_the_bitangent_on_both_faces() {
         ] {
             let found = shine(engine, model, front, x);
             println!("{engine:?} {name} at {x}: {found}, expected {expected}");
-            assert!(
-                (found / expected - 1.0).abs() < 0.05,
-                "{engine:?} {name} at {x}: {found}, expected {expected}"
-            );
+            near!(found / expected, 1.0, 0.05, "{engine:?} {name} at {x}");
         }
     }
 }

@@ -56,13 +56,10 @@ fn a_light_hidden_from_the_camera_shines_and_is_not_seen() {
         });
         assert!(luminance(at(&seen, place)) > 9.0, "{engine:?}: {:?}", at(&seen, place));
         for (channel, background) in std::iter::zip(at(&hidden, place), BACKGROUND) {
-            assert!((channel - f64::from(background)).abs() < 1e-5, "{engine:?}: {channel}");
+            near!(channel, f64::from(background), 1e-5, "{engine:?}");
         }
         let (before, now) = (of_sphere(&seen), of_sphere(&hidden));
-        assert!(
-            (now / before - 1.0).abs() < 0.02,
-            "{engine:?}: {now} instead of {before}"
-        );
+        near!(now / before, 1.0, 0.02, "{engine:?}");
         let mut document = lamp_beside_a_sphere(&mirror);
         document.lighting.area_lights[0].is_hidden = true;
         let mirrored = render(engine, &document);
@@ -94,10 +91,7 @@ fn parallel_rays_show_true_sizes_wherever_the_camera_is() {
             let alpha = (0..film.pixel_count()).map(|pixel| film.mean(pixel)[3]).sum::<f64>();
             let share = alpha / film.pixel_count() as f64;
             // The sphere's triangles lie a little within it.
-            assert!(
-                (share - covered).abs() < 0.004,
-                "{engine:?}, {projection:?} at {distance}: {share}"
-            );
+            near!(share, covered, 0.004, "{engine:?}, {projection:?} at {distance}");
         }
     }
 }

@@ -132,5 +132,6 @@ fn wrong_arguments_are_refused() {
     }
     place.refused(2, "paint", &["paint", "no such command", "--help"]);
     place.write("notes.txt", b"milk, bread");
+    place.refused(1, "render --texture coat=notes.txt", &["notes.txt", "can't be had"]);
     place.refused(1, "--engine cpu notes.txt", &["notes.txt", ".glb"]);
 }

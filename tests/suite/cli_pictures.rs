@@ -16,7 +16,18 @@ fn layers(place: &Workplace, engine: &str) -> HashMap<String, Vec<f32>> {
          --camera-distance 5 --fov 30 --filter box --set specular.weight=0 --set base.metalness=0 \
          --set base.color=0.5,0.25,0.125 --aovs --output {engine}.exr"
     ));
-    channels(&place.path(&format!("{engine}.exr")))
+    channels(&place.path(format!("{engine}.exr")))
+}
+
+#[test]
+fn what_is_behind_lights_nothing() {
+    let place = Workplace::new();
+    let middle = |background: &str| {
+        place
+            .picture(&format!("--model sphere --background {background}"))
+            .at(12, 12)
+    };
+    assert_eq!(middle("#336699"), middle("environment"));
 }
 
 #[test]
@@ -52,16 +63,13 @@ fn layers_hold_the_spheres_depth_normals_and_albedo() {
             let depth = (5.0 - discriminant.sqrt()) / (1.0 + square);
             let normal = [across * depth, up * depth, 5.0 - depth];
             let found = ["normal.X", "normal.Y", "normal.Z"].map(|name| f64::from(at(name, x, y)));
-            assert!(
-                (f64::from(at("depth.Z", x, y)) - depth).abs() < 0.01,
-                "depth at {x}, {y}"
-            );
+            near!(f64::from(at("depth.Z", x, y)), depth, 0.01);
             for (found, expected) in std::iter::zip(found, normal) {
-                assert!((found - expected).abs() < 0.02, "{found} is not {expected} at {x}, {y}");
+                near!(found, expected, 0.02, "{found} is not {expected} at {x}, {y}");
             }
             let albedo = ["albedo.R", "albedo.G", "albedo.B"].map(|name| at(name, x, y));
             for (found, expected) in std::iter::zip(albedo, [0.5, 0.25, 0.125]) {
-                assert!((found - expected).abs() < 1e-4, "{albedo:?} at {x}, {y}");
+                near!(found, expected, 0.0001, "{albedo:?} at {x}, {y}");
             }
         }
     }
@@ -119,7 +127,7 @@ fn a_turntable_is_numbered_frames_of_a_turn() {
         })
         .collect();
     assert_eq!(yaws, [30.0, 120.0, -150.0, -60.0]);
-    let report: Value = serde_json::from_str(&place.read("report.json")).unwrap();
+    let report: Value = place.json("report.json");
     assert_eq!(
         (&report["frames"], &report["turn"], &report["engine"]),
         (&4.into(), &"camera".into(), &"cpu".into())
@@ -142,7 +150,7 @@ fn a_turntable_is_a_video_where_that_is_asked_for() {
         "turntable {scene} --video turn.gif --fps 10 --report report.json"
     ));
     assert!(!place.path("turntable").exists(), "pictures were not asked for");
-    let report: Value = serde_json::from_str(&place.read("report.json")).unwrap();
+    let report: Value = place.json("report.json");
     assert_eq!((&report["video"], &report["fps"]), (&"turn.gif".into(), &10.0.into()));
     assert_eq!(report["files"], serde_json::json!(["turn.gif"]));
     let mut options = gif::DecodeOptions::new();
@@ -150,12 +158,12 @@ fn a_turntable_is_a_video_where_that_is_asked_for() {
     let file = std::fs::File::open(place.path("turn.gif")).unwrap();
     let mut video = options.read_info(file).unwrap();
     place.done(&format!("turntable {scene} --video turn.mp4 --output turn"));
-    assert_eq!(&std::fs::read(place.path("turn.mp4")).unwrap()[4..8], b"ftyp");
+    assert_eq!(&place.bytes("turn.mp4")[4..8], b"ftyp");
     for number in 1..=3 {
         // The pictures of the same turn, but for what 256 colours leave.
         let frame = video.read_next_frame().unwrap().unwrap();
         assert_eq!(frame.delay, 10, "hundredths of a second");
-        let picture = image::open(place.path(&format!("turn/frame-000{number}.png"))).unwrap();
+        let picture = image::open(place.path(format!("turn/frame-000{number}.png"))).unwrap();
         let pairs = std::iter::zip(&frame.buffer[..], picture.into_rgba8().into_raw());
         let error = pairs.map(|(a, b)| u64::from(a.abs_diff(b))).sum::<u64>() as f64 / frame.buffer.len() as f64;
         assert!(error < 2.0, "frame {number} is off by {error} codes");

@@ -9,10 +9,7 @@ const BLUE: [f32; 3] = [0.033_104_77, 0.132_868_33, 0.318_546_78];
 
 fn assert_near(found: &[f32], expected: &[f32], tolerance: f32) {
     for (x, y) in found.iter().zip(expected) {
-        assert!(
-            (x - y).abs() <= tolerance * y.abs().max(1.0),
-            "{found:?} is not {expected:?}"
-        );
+        near!(x, y, tolerance * y.abs().max(1.0), "{found:?} is not {expected:?}");
     }
 }
 
@@ -75,7 +72,7 @@ fn cameras_stand_where_they_are_put() {
     let render = |arguments: &str| place.picture(&format!("--environment sky {arguments}"));
     let orbit = render("--camera-orbit 90,0 --camera-distance 9 --camera-target 1,2,3");
     let position = render("--camera-position 10,2,3 --camera-target 1,2,3");
-    assert!(orbit.difference(&position) < 1e-4, "{}", orbit.difference(&position));
+    assert!(orbit.difference(&position) < 0.0001, "{}", orbit.difference(&position));
     let other = [
         "--camera-orbit -90,0 --camera-distance 9 --camera-target 1,2,3",
         "--camera-orbit 90,30 --camera-distance 9 --camera-target 1,2,3",
@@ -92,22 +89,19 @@ fn cameras_stand_where_they_are_put() {
 #[test]
 fn sheets_beyond_the_last_that_a_ray_passes_are_told() {
     let place = Workplace::new();
-    for (sheets, opacity, size, seen, cut) in [(300, 1e-3, 32, 0.7407, 0.0), (4500, 1e-5, 8, 0.9599, 0.9599)] {
+    for (sheets, opacity, size, seen, cut) in [(300, 0.001, 32, 0.7407, 0.0), (4500, 1e-5, 8, 0.9599, 0.9599)] {
         let sheet = |i: u32| {
             let y = 0.5 * f64::from(i) / f64::from(sheets);
             format!("v -1 {y} -1\nv -1 {y} 1\nv 1 {y} 1\nv 1 {y} -1\nf -4 -3 -2 -1\n")
         };
-        place.write("sheets.obj", (0..sheets).map(sheet).collect::<String>().as_bytes());
+        place.write("sheets.obj", (0..sheets).map(sheet).collect::<String>());
         let report = place.report(&format!(
             "--model sheets.obj --environment furnace --camera-orbit 0,90 --camera-distance 1 --fov 5 \
              --size {size}x{size} --samples 4 --set base.metalness=0 --set base.color=0,0,0 --set specular.weight=0 --set geometry.opacity={opacity}"
         ));
         for (key, right) in [("mean_luminance", seen), ("cut_energy", cut)] {
             let found = report[key].as_f64().unwrap();
-            assert!(
-                (found - right).abs() < 0.04,
-                "{sheets} sheets, {key}: {found} for {right}"
-            );
+            near!(found, right, 0.04, "{sheets} sheets, {key}");
         }
     }
 }
@@ -120,7 +114,7 @@ fn samples_of_a_pixel_of_1e30_are_left_out_and_told() {
     write_hdr(&path, 16, 8, |x, y| [if (x, y) == (4, 2) { 1e30 } else { 0.5 }; 3]);
     let scene = "render --model sphere --environment bright.hdr --size 16x16 --samples 4 --engine cpu -o b.exr";
     let said = place.done(&format!("{scene} --report b.json")).stderr;
-    let report: Value = serde_json::from_str(&place.read("b.json")).unwrap();
+    let report: Value = place.json("b.json");
     let dropped = report["dropped_samples"].as_u64().unwrap();
     let told = format!("{dropped} samples were left out: not finite, negative, or above 1e18");
     assert!(dropped > 0 && said.contains(&told), "{told}: {said}");

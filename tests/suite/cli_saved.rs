@@ -3,7 +3,7 @@
 use glossmith::{
     document::{Background, Document, MaterialSettings, SETTINGS},
     scene::ModelSource,
-    store::{save_document, save_material},
+    store::save_material,
 };
 
 use crate::cli_support::{Picture, Workplace};
@@ -71,7 +71,7 @@ fn every_command_answers_in_json_on_standard_output() {
 #[test]
 fn a_project_is_rendered_as_it_was_saved_and_options_stand_over_it() {
     let place = Workplace::new();
-    save_document(&place.path("saved.json"), &saved()).unwrap();
+    place.save_document("saved.json", &saved());
     let by_file = rendered(&place, "saved.json");
     assert_eq!((by_file.width, by_file.height), (20, 12));
     // The same by options alone.
@@ -88,7 +88,7 @@ fn a_project_is_rendered_as_it_was_saved_and_options_stand_over_it() {
     assert_eq!((again.width, again.height), (10, 6));
     // What is not given stays: a limit of time lets samples go on, another seed does not.
     place.done("render saved.json --engine cpu --output a.exr --seed 3 --report r.json");
-    let report: serde_json::Value = serde_json::from_str(&place.read("r.json")).unwrap();
+    let report: serde_json::Value = place.json("r.json");
     assert_eq!((&report["seed"], &report["samples_per_pixel"]), (&3.into(), &3.into()));
 }
 

@@ -47,7 +47,7 @@ fn absorbed_samples_are_left_out_and_counted() {
     assert_eq!(kept.len() + absorbed, 4000);
     assert!(kept.iter().all(|row| row[2] >= 0.0));
     // The share below the horizon that was measured for this case: 10.1 %, five standard deviations around it.
-    assert!((absorbed as f64 / 4000.0 - 0.101).abs() < 0.024, "{absorbed} absorbed");
+    near!(absorbed as f64 / 4000.0, 0.101, 0.024);
     let run = place.done(&format!("{common} --horizon mirror --output mirror.csv"));
     assert!(!run.stderr.contains("absorbed"));
     let mirrored = rows(&place, "mirror.csv");
@@ -60,7 +60,7 @@ fn absorbed_samples_are_left_out_and_counted() {
     for (through, mirrored) in all.iter().zip(&mirrored) {
         let [x, y, z, _] = through;
         for (found, expected) in mirrored.iter().zip([*x, *y, z.abs()]) {
-            assert!((found - expected).abs() < 1e-5, "{through:?} became {mirrored:?}");
+            near!(found, expected, 1e-5, "{through:?} became {mirrored:?}");
         }
     }
 }

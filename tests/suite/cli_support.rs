@@ -6,6 +6,11 @@ use exr::prelude::{
     Encoding, Image, Layer, LayerAttributes, ReadChannels as _, ReadLayers as _, SpecificChannels, Vec2, WritableImage,
     f16, read, read_first_rgba_layer_from_file,
 };
+use glossmith::{
+    document::{Document, MaterialSettings},
+    store::{load_document, load_material, save_document, save_material},
+};
+use serde_json::Value;
 use tempfile::TempDir;
 
 /// What a run left behind.
@@ -26,7 +31,7 @@ pub fn passes_alone(test: &str) {
     assert!(output.contains("1 passed"), "{output}");
 }
 
-/// A folder in which the program runs.
+/// A folder of its own for a test, in which the program runs.
 pub struct Workplace(TempDir);
 
 /// Quick to render, and still a picture; for each option that a test does not give itself.
@@ -46,11 +51,15 @@ impl Workplace {
         Self(TempDir::new().unwrap())
     }
 
-    pub fn path(&self, name: &str) -> PathBuf {
-        self.0.path().join(name)
+    pub fn root(&self) -> &Path {
+        self.0.path()
     }
 
-    pub fn write(&self, name: &str, bytes: &[u8]) {
+    pub fn path(&self, name: impl AsRef<Path>) -> PathBuf {
+        self.root().join(name)
+    }
+
+    pub fn write(&self, name: &str, bytes: impl AsRef<[u8]>) {
         std::fs::write(self.path(name), bytes).unwrap();
     }
 
@@ -58,16 +67,40 @@ impl Workplace {
         std::fs::read_to_string(self.path(name)).unwrap()
     }
 
+    pub fn bytes(&self, name: &str) -> Vec<u8> {
+        std::fs::read(self.path(name)).unwrap()
+    }
+
+    pub fn material(&self, name: &str) -> MaterialSettings {
+        load_material(&self.path(name)).unwrap().value
+    }
+
+    pub fn document(&self, name: &str) -> Document {
+        load_document(&self.path(name)).unwrap().value
+    }
+
+    pub fn save_material(&self, name: &str, material: &MaterialSettings) {
+        save_material(&self.path(name), material).unwrap();
+    }
+
+    pub fn save_document(&self, name: &str, document: &Document) {
+        save_document(&self.path(name), document).unwrap();
+    }
+
+    pub fn json(&self, name: &str) -> Value {
+        serde_json::from_str(&self.read(name)).unwrap()
+    }
+
     /// Runs the program with arguments that have blanks between them, without a display.
     pub fn run(&self, arguments: &str) -> Run {
         let output = Command::new(crate::program())
             .args(arguments.split_whitespace())
-            .current_dir(self.0.path())
+            .current_dir(self.root())
             .env_remove("DISPLAY")
             .env_remove("WAYLAND_DISPLAY")
             .env_remove("RUST_LOG")
             // Without it libraries of the system complain on standard error.
-            .env("XDG_RUNTIME_DIR", self.0.path())
+            .env("XDG_RUNTIME_DIR", self.root())
             .output()
             .unwrap();
         Run {
@@ -91,9 +124,9 @@ impl Workplace {
     }
 
     /// The report of a small picture by these arguments of `render`.
-    pub fn report(&self, arguments: &str) -> serde_json::Value {
+    pub fn report(&self, arguments: &str) -> Value {
         self.done(&quick(&format!("--report report.json {arguments}")));
-        serde_json::from_str(&self.read("report.json")).unwrap()
+        self.json("report.json")
     }
 
     /// Runs the program, which must refuse with this exit code and all these words in one line, after warnings at most.

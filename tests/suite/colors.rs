@@ -35,7 +35,7 @@ fn colors_are_on_the_planckian_locus() {
     ] {
         let found = chromaticity(blackbody_color(temperature_k));
         assert!(
-            (found[0] - x).abs() < 4e-3 && (found[1] - y).abs() < 4e-3,
+            (found[0] - x).abs() < 0.004 && (found[1] - y).abs() < 0.004,
             "{temperature_k}: {found:?}"
         );
     }
@@ -45,7 +45,7 @@ fn colors_are_on_the_planckian_locus() {
 fn a_color_tells_its_temperature() {
     for temperature_k in [2000.0, 2700.0, 5600.0, 19000.0] {
         let found = temperature_of_color(blackbody_color(temperature_k));
-        assert!((found / temperature_k - 1.0).abs() < 1e-6, "{temperature_k}: {found}");
+        near!(found / temperature_k, 1.0, 1e-6);
     }
     // White is near that of the day.
     assert!((6000.0..7500.0).contains(&temperature_of_color([1.0; 3])));
@@ -82,7 +82,7 @@ fn known_spaces_have_their_known_matrices() {
     ] {
         let found = space.rec709_from().expect("a space").expect("a matrix");
         for (found, expected) in found.iter().flatten().zip(expected.iter().flatten()) {
-            assert!((found - expected).abs() < 4e-4, "{found} in place of {expected}");
+            near!(found, expected, 0.0004);
         }
         let white = transformed(&found, [1.0; 3]);
         assert!(white.iter().all(|x| (x - 1.0).abs() < 1e-9), "{white:?}");
@@ -102,21 +102,21 @@ fn the_light_that_is_to_be_white_becomes_white() {
         let white = blackbody_color(f64::from(Grade::NEUTRAL_K));
         let [r, g, b] = Grade::new(kelvin, 1.0, 1.0).apply(Vec3::from_f64(light)).to_f32();
         let scale = g / white[1] as f32;
-        assert!((r / scale - white[0] as f32).abs() < 1e-4, "{kelvin} K: {r}");
-        assert!((b / scale - white[2] as f32).abs() < 1e-4, "{kelvin} K: {b}");
+        near!(r / scale, white[0] as f32, 0.0001, "{kelvin} K");
+        near!(b / scale, white[2] as f32, 0.0001, "{kelvin} K");
     }
 }
 
 #[test]
 fn contrast_keeps_middle_grey_and_saturation_luminance() {
     let grey = Vec3::splat(MIDDLE_GREY);
-    assert!((Grade::new(Grade::NEUTRAL_K, 1.7, 1.0).apply(grey).x - MIDDLE_GREY).abs() < 1e-6);
+    near!(Grade::new(Grade::NEUTRAL_K, 1.7, 1.0).apply(grey).x, MIDDLE_GREY, 1e-6);
     let color = Vec3::from_f64([0.5, 0.3, 0.2]);
     let changed = Grade::new(Grade::NEUTRAL_K, 1.0, 1.3).apply(color);
-    assert!((changed.luminance() - color.luminance()).abs() < 1e-6);
+    near!(changed.luminance(), color.luminance(), 1e-6);
     assert!(changed.x > color.x && changed.z < color.z);
     let grey = Grade::new(Grade::NEUTRAL_K, 1.0, 0.0).apply(color);
-    assert!((grey.x - grey.z).abs() < 1e-6);
+    near!(grey.x, grey.z, 1e-6);
 }
 
 /// Every measured metal keeps its colour head-on and at 82°, and is near between.
@@ -134,7 +134,7 @@ fn measured_metals_keep_their_look_by_two_colours() {
                 // The tint only darkens: what brightens towards 82° stays Schlick's there.
                 let slack = if tint.to_f64()[i] >= 1.0 { 0.05 } else { tolerance };
                 let name = conductor.name();
-                assert!((found - exact).abs() < slack, "{name} at {cosine}: {found} for {exact}");
+                near!(found, exact, slack, "{name} at {cosine}");
             }
         }
     }

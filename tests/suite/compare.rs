@@ -1,8 +1,8 @@
 //! Comparing, pinning, pictures that bring their document back: in the editor with the real renderer.
 
 use super::{
-    ui::{Editor, editor, editor_of, options, request, see, settle, wait},
-    ui_hands::{Hands as _, press},
+    cli_support::Workplace,
+    ui::{Editor, editor, editor_of, options},
     worker::small_document,
 };
 use egui::{Key, Modifiers, Vec2, accesskit::Role};
@@ -21,8 +21,8 @@ use glossmith::{
 
 /// Waits until B, too, is finished and both have been compared.
 fn settle_both(harness: &mut Editor, what: &str, is_b: impl Fn(&Document) -> bool) {
-    settle(harness);
-    wait(harness, what, |app| {
+    harness.settle();
+    harness.wait(what, |app| {
         let Some(snapshot) = app.rival_snapshot() else {
             return false;
         };
@@ -30,7 +30,7 @@ fn settle_both(harness: &mut Editor, what: &str, is_b: impl Fn(&Document) -> boo
             |picture: &Picture| picture.reduction == 1 && picture.samples_per_pixel == 3 && is_b(&picture.document);
         snapshot.activity == Activity::Done && snapshot.picture.as_deref().is_some_and(is_current)
     });
-    wait(harness, "the difference", |app| app.rms_difference().is_some());
+    harness.wait("the difference", |app| app.rms_difference().is_some());
     harness.run_steps(2);
     harness.check_accessibility();
 }
@@ -38,19 +38,14 @@ fn settle_both(harness: &mut Editor, what: &str, is_b: impl Fn(&Document) -> boo
 #[test]
 fn a_and_b_have_the_same_random_numbers() {
     let mut harness = editor();
-    let same = harness.document().materials[0].clone();
-    request(
-        &mut harness,
-        Action::CompareWith(Rival::Material(Box::new(same.clone()))),
-    );
+    let same = harness.material().clone();
+    harness.request(Action::CompareWith(Rival::Material(Box::new(same.clone()))));
     settle_both(&mut harness, "B", |_| true);
-    wait(&mut harness, "no difference", |app| app.rms_difference() == Some(0.0));
+    harness.wait("no difference", |app| app.rms_difference() == Some(0.0));
     let mut other = same;
     other.roughness = 0.9;
-    request(&mut harness, Action::CompareWith(Rival::Material(Box::new(other))));
-    wait(&mut harness, "a difference", |app| {
-        app.rms_difference().is_some_and(|rms| rms > 0.01)
-    });
+    harness.request(Action::CompareWith(Rival::Material(Box::new(other))));
+    harness.wait("a difference", |app| app.rms_difference().is_some_and(|rms| rms > 0.01));
 }
 
 /// B is chosen among the presets, which leaves A as it is.
@@ -61,13 +56,14 @@ fn b_is_chosen_in_the_grid_of_presets() {
     harness.command(Command::Compare);
     harness.run_steps(3);
     harness.click(Role::ComboBox, "Compare with");
-    press(&mut harness, "Choose a preset…");
-    press(&mut harness, "Rubber");
-    wait(&mut harness, "B", |app| {
+    harness.press("Choose a preset…");
+    harness.press("Rubber");
+    harness.wait("B", |app| {
         let b = app.rival_snapshot().and_then(|rival| rival.picture.clone());
         b.is_some_and(|b| b.document.materials[0].name == "Rubber")
     });
     assert_eq!(*harness.document(), before);
+    assert!(!harness.has("not matched"));
 }
 
 #[test]
@@ -77,10 +73,7 @@ fn every_view_shows_what_it_says() {
         .iter()
         .find(|preset| preset.name == "Lambert white")
         .expect("shipped");
-    request(
-        &mut harness,
-        Action::CompareWith(Rival::Material(Box::new(white.clone()))),
-    );
+    harness.request(Action::CompareWith(Rival::Material(Box::new(white.clone()))));
     settle_both(&mut harness, "B", |b| b.materials[0] == *white);
     let colors = |harness: &mut Editor, at: [f32; 2]| {
         harness.run_steps(2);
@@ -123,7 +116,7 @@ fn every_view_shows_what_it_says() {
     );
 
     harness.click(Role::Button, "Side by side");
-    settle(&mut harness);
+    harness.settle();
     let [a, b] = [colors(&mut harness, [0.25, 0.5]), colors(&mut harness, [0.75, 0.5])];
     assert_ne!(a, b);
 
@@ -142,25 +135,19 @@ fn swapping_and_taking_b_are_one_step_each() {
     let mut harness = editor();
     let before = harness.document().clone();
     let gold = PRESETS.iter().find(|preset| preset.name == "Gold").expect("shipped");
-    request(
-        &mut harness,
-        Action::CompareWith(Rival::Material(Box::new(gold.clone()))),
-    );
+    harness.request(Action::CompareWith(Rival::Material(Box::new(gold.clone()))));
     settle_both(&mut harness, "B", |b| b.materials[0] == *gold);
     harness.key_press(Key::X);
     harness.run_steps(2);
-    assert_eq!(harness.document().materials[0], *gold);
+    assert_eq!(*harness.material(), *gold);
     settle_both(&mut harness, "the old A", |b| b.materials == before.materials);
     harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     harness.run_steps(2);
     assert_eq!(*harness.document(), before);
-    request(
-        &mut harness,
-        Action::CompareWith(Rival::Material(Box::new(gold.clone()))),
-    );
+    harness.request(Action::CompareWith(Rival::Material(Box::new(gold.clone()))));
     settle_both(&mut harness, "B", |b| b.materials[0] == *gold);
     harness.click(Role::Button, "Replace A with B");
-    assert_eq!(harness.document().materials[0], *gold);
+    assert_eq!(*harness.material(), *gold);
     assert!(
         harness
             .query_by_role_and_label(Role::Button, "Replace A with B")
@@ -178,30 +165,30 @@ fn has_button(harness: &Editor, label: &str) -> bool {
 
 #[test]
 fn snapshots_are_pinned_kept_brought_back_compared_and_deleted() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
+    let folder = Workplace::new();
     let with_data = || {
         editor_of(Options {
-            data: Some(folder.path().to_owned()),
+            data: Some(folder.root().to_owned()),
             ..options()
         })
     };
     let mut harness = with_data();
-    settle(&mut harness);
+    harness.settle();
     let mut pinned = harness.document().clone();
     pinned.materials[0].name = "Zebra".to_owned();
     pinned.materials[0].roughness = 0.77;
-    request(&mut harness, Action::UseMaterial(Box::new(pinned.materials[0].clone())));
-    settle(&mut harness);
+    harness.request(Action::UseMaterial(Box::new(pinned.materials[0].clone())));
+    harness.settle();
     harness.key_press(Key::P);
-    see(&mut harness, "the snapshot", |harness| has_button(harness, "Zebra"));
+    harness.see("the snapshot", |harness| has_button(harness, "Zebra"));
     harness.check_accessibility();
     eframe::App::on_exit(harness.state_mut());
     drop(harness);
 
     let mut harness = with_data();
-    settle(&mut harness);
+    harness.settle();
     harness.state_mut().reveal(Pane::Snapshots);
-    see(&mut harness, "the snapshot", |harness| has_button(harness, "Zebra"));
+    harness.see("the snapshot", |harness| has_button(harness, "Zebra"));
     let before = harness.document().clone();
     harness.click(Role::Button, "Zebra");
     assert_eq!(*harness.document(), pinned);
@@ -216,11 +203,11 @@ fn snapshots_are_pinned_kept_brought_back_compared_and_deleted() {
     harness.click(Role::Button, "Rename");
     harness.write("New name", "Quagga");
     harness.key_press(Key::Enter);
-    see(&mut harness, "its new name", |harness| has_button(harness, "Quagga"));
-    assert!(!has_button(&harness, "Zebra") && folder.path().join("snapshots/Quagga.png").is_file());
+    harness.see("its new name", |harness| has_button(harness, "Quagga"));
+    assert!(!has_button(&harness, "Zebra") && folder.path("snapshots/Quagga.png").is_file());
     harness.click(Role::Button, "More of Quagga");
     harness.click(Role::Button, "Delete");
-    see(&mut harness, "it to go", |harness| !has_button(harness, "Quagga"));
+    harness.see("it to go", |harness| !has_button(harness, "Quagga"));
     harness.click(Role::Button, "Restore Quagga");
-    see(&mut harness, "it to come back", |harness| has_button(harness, "Quagga"));
+    harness.see("it to come back", |harness| has_button(harness, "Quagga"));
 }

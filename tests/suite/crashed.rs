@@ -7,9 +7,9 @@ use egui_kittest::kittest::Queryable as _;
 use glossmith::app::{Options, actions::Command as Choice, report_panics};
 
 use super::{
+    cli_support::Workplace,
     nothing_lost::{edit, keeping_editor},
-    ui::{Editor, editor_of, options, see, wait},
-    ui_hands::Hands as _,
+    ui::{Editor, editor_of, options},
 };
 
 /// The data folder of the child.
@@ -29,11 +29,11 @@ fn edits_and_panics() {
         autosave_interval: Some(Duration::from_secs(3600)),
         ..options()
     });
-    wait(&mut harness, "an engine", |app| app.snapshot().engine.is_some());
+    harness.wait("an engine", |app| app.snapshot().engine.is_some());
     harness.command(Choice::ToggleTheme);
     // The first edit is put aside at once, the second one an hour later.
     edit(&mut harness, 0.9);
-    wait(&mut harness, "the first copy", |_| holds_a_copy(&data));
+    harness.wait("the first copy", |_| holds_a_copy(&data));
     edit(&mut harness, LOST);
     if std::env::var(PLACE).as_deref() == Ok("window") {
         panic!("the window breaks on purpose");
@@ -41,7 +41,7 @@ fn edits_and_panics() {
     let thread = std::thread::Builder::new().name("poor thing".to_owned());
     let thread = thread.spawn(|| panic!("a thread breaks on purpose")).expect("a thread");
     assert!(thread.join().is_err());
-    wait(&mut harness, "the words", |app| {
+    harness.wait("the words", |app| {
         let is_told = |text: &String| text.contains("\"poor thing\": a thread breaks on purpose");
         app.messages().iter().any(is_told)
     });
@@ -79,14 +79,14 @@ fn a_panic_leaves_the_document_and_a_report_and_the_next_start_says_so() {
         ("window", "the window breaks on purpose"),
         ("thread", "a thread breaks on purpose"),
     ] {
-        let folder = tempfile::tempdir().expect("a temporary folder");
-        crash(folder.path(), place);
-        let mut harness = keeping_editor(folder.path());
-        see(&mut harness, "the offer", |harness| offers(harness, message));
+        let folder = Workplace::new();
+        crash(folder.root(), place);
+        let mut harness = keeping_editor(folder.root());
+        harness.see("the offer", |harness| offers(harness, message));
         harness.check_accessibility();
         harness.click(Role::Button, "Restore untitled");
-        assert_eq!(harness.document().materials[0].roughness, LOST, "{place}");
-        let report = report(folder.path());
+        assert_eq!(harness.material().roughness, LOST, "{place}");
+        let report = report(folder.root());
         for words in [
             message,
             "cpu on ",

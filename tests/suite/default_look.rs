@@ -1,5 +1,6 @@
 //! What metals and paints look like at first sight: the shipped light and the default tone curve.
 
+use crate::renders::adjust;
 use std::time::Duration;
 
 use glossmith::{
@@ -51,7 +52,10 @@ fn codes(name: &str, environment: EnvironmentSource, tone_map: ToneCurve, backgr
         ..Document::default()
     };
     (document.lighting.environment, document.lighting.background) = (environment, background);
-    (document.render.width, document.render.height, document.render.samples) = (SIDE, SIDE, 64);
+    adjust(
+        &mut document,
+        &format!("render.width={SIDE} render.height={SIDE} render.samples=64"),
+    );
     let mut session = Session::open(EngineChoice::Cpu).expect("always");
     session.submit(&document).expect("a sphere");
     while !session.step(Duration::from_secs(1)).expect("it renders").is_done {}
@@ -98,15 +102,12 @@ fn white_is_white_in_the_light_of_the_start() {
         for column in 0..light.width {
             let height = texel_direction([column, row], [light.width, light.height]).y;
             let [r, g, b, _] = light.texels[(row * light.width + column) as usize];
-            irradiance = irradiance + Vec3::from_f32([r, g, b]) * (height * (1.0 - height * height).sqrt());
+            irradiance += Vec3::from_f32([r, g, b]) * (height * (1.0 - height * height).sqrt());
         }
     }
     let mean = (irradiance.x + irradiance.y + irradiance.z) / 3.0;
     for (channel, of_mean) in (irradiance / mean).to_f64().into_iter().enumerate() {
-        assert!(
-            (of_mean - 1.0).abs() < 0.02,
-            "channel {channel}: {of_mean:.3} of the mean"
-        );
+        near!(of_mean, 1.0, 0.02, "channel {channel}");
     }
     for name in ["plastic-white", "porcelain"] {
         let [lightness, chroma, _] = ball(name, EnvironmentSource::default(), ToneCurve::default());

@@ -3,21 +3,21 @@
 
 use glossmith::{
     analysis::halves::Halves,
-    document::{Denoise, Document, assign},
+    document::{Denoise, Document},
     job::{film::Extras, film::Film, guides::GuideSums},
     render::{EngineChoice, Session, denoise::Denoiser, denoise::Noisy},
     scene::{ModelSource, environment::EnvironmentSource, texture::TextureTarget, texture::UserTexture},
 };
 use image::Luma;
 
-use super::{gltf_builder::Folder, support::Random};
+use super::{cli_support::Workplace, renders::adjust, support::Random};
 
 fn denoiser() -> Denoiser {
     Denoiser::open().unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// A picture of 64 × 64 squares, black and white by chance.
-fn squares(folder: &Folder) -> std::path::PathBuf {
+fn squares(folder: &Workplace) -> std::path::PathBuf {
     let mut random = Random::new(11);
     let path = folder.path("squares.png");
     let square = |_, _| Luma([if random.unit() < 0.5 { 0 } else { 255_u8 }]);
@@ -31,17 +31,17 @@ fn plane() -> Document {
         model: ModelSource::Plane,
         ..Document::default()
     };
-    assign(&mut document.materials[0], "specular.weight=0").unwrap();
-    assign(&mut document.materials[0], "base.metalness=0").unwrap();
+    adjust(&mut document, "specular.weight=0");
+    adjust(&mut document, "base.metalness=0");
     document.lighting.environment = EnvironmentSource::Furnace;
     document.camera.pitch_deg = 60.0;
-    (document.render.width, document.render.height) = (64, 64);
+    adjust(&mut document, "render.width=64 render.height=64");
     document.view.denoise = Denoise::High;
     document
 }
 
 /// Such a plane shows nothing but its squares: as many of the picture's as `scale` says lie on it.
-fn textured_plane(folder: &Folder, scale: f32) -> Document {
+fn textured_plane(folder: &Workplace, scale: f32) -> Document {
     let mut document = plane();
     let texture = UserTexture {
         scale,
@@ -63,11 +63,11 @@ fn finish(session: &mut Session, document: &Document) -> Film {
 #[test]
 fn the_error_told_under_a_texture_is_the_true_one() {
     const RENDERS: u32 = 20;
-    let folder = Folder::new();
+    let folder = Workplace::new();
     let (mut session, mut denoiser) = (Session::open(EngineChoice::Cpu).unwrap(), denoiser());
     let mut document = textured_plane(&folder, 0.7);
     // Its own noise is taken out by its halves.
-    (document.render.samples, document.render.seed) = (512, 77);
+    adjust(&mut document, "render.samples=512 render.seed=77");
     let reference = Halves::of(&finish(&mut session, &document));
     // How many are inside the band at 16 samples is told, not judged: the filter leaves the picture nearly as it is.
     for (samples, inside_min) in [(4, 15), (16, 0)] {
@@ -84,7 +84,7 @@ fn the_error_told_under_a_texture_is_the_true_one() {
         let [truth, estimate] = squares.map(|sum: f64| (sum / f64::from(RENDERS)).sqrt());
         println!("{samples} samples: true {truth:.4}, estimate {estimate:.4}, inside {inside}");
         // A band is some 20 % wide, the mean of 20 squares some 5 %.
-        assert!((estimate / truth - 1.0).abs() < 0.2, "{samples}: {estimate} {truth}");
+        near!(estimate / truth, 1.0, 0.2, "{samples}");
         // 19 of 20 on average; fewer than 15 in one of 10 000.
         assert!(inside >= inside_min, "{samples}: {inside} of {RENDERS}");
     }
@@ -155,6 +155,6 @@ fn nothing_of_a_half_gets_into_the_other_s_picture() {
     let alike = sums(picture(0, 0), picture(1, 1));
     let crossed = sums(picture(0, 1), picture(1, 0));
     for (pixel, (a, b)) in std::iter::zip(&alike, &crossed).enumerate() {
-        assert!((a - b).abs() < 1e-4 * a, "{pixel}: {a} {b}");
+        near!(a, b, 0.0001 * a, "{pixel}");
     }
 }

@@ -60,7 +60,7 @@ fn renders_as_ever(worker: &Worker, kind: EngineKind) {
     let alone = Worker::spawn(EngineChoice::Cpu, || {}).expect("a thread");
     let expected = finished(&alone, alone.submit(&document, Pace::Still));
     let [mean, wanted] = [&picture.image, &expected.image].map(|image| mean(image));
-    assert!((mean / wanted - 1.0).abs() < 1e-3, "{mean} in place of {wanted}");
+    near!(mean / wanted, 1.0, 0.001);
     let snapshot = worker.snapshot();
     let engine = snapshot.engine.as_ref().expect("it renders");
     assert_eq!(engine.kind, kind);
@@ -144,7 +144,7 @@ fn what_was_read_back_counts() {
     alone.submit(&document).expect("a sphere");
     while !alone.step(Duration::from_secs(1)).expect("always").is_done {}
     let [mean, wanted] = [session, alone].map(|mut session| mean(&session.image().expect("it is done")));
-    assert!((mean / wanted - 1.0).abs() < 1e-3, "{mean} in place of {wanted}");
+    near!(mean / wanted, 1.0, 0.001);
 }
 
 #[test]

@@ -11,7 +11,10 @@ use glossmith::{
     },
 };
 
-use super::worker::{small_document, wait};
+use super::{
+    renders::adjust,
+    worker::{small_document, wait},
+};
 
 /// What of an image is not of its size.
 pub fn faults(picture: &Picture) -> Vec<String> {
@@ -70,7 +73,7 @@ fn every_display_at_every_step_is_of_one_film() {
     let worker = desk.get().unwrap();
     let mut document = small_document();
     // The smallest with a step of 1/4.
-    (document.render.width, document.render.height, document.render.samples) = (384, 384, 2);
+    adjust(&mut document, "render.width=384 render.height=384 render.samples=2");
     document.view.denoise = Denoise::Fast;
     let mut coarse = Vec::new();
     for (turn, &shown) in Shown::ALL.iter().enumerate() {

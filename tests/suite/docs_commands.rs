@@ -6,7 +6,7 @@ use glossmith::cli::Arguments;
 use super::docs::{pages, text_of};
 
 /// The command lines of Glossmith in the shell examples of a page, continued lines joined.
-pub(super) fn commands(page: &str) -> Vec<String> {
+pub fn commands(page: &str) -> Vec<String> {
     let examples = page
         .split("```sh\n")
         .skip(1)
@@ -20,7 +20,7 @@ pub(super) fn commands(page: &str) -> Vec<String> {
 }
 
 /// The arguments of a command as a shell hands them over: up to a comment, a pipe or a redirection, without quotes.
-pub(super) fn arguments(command: &str) -> Vec<String> {
+pub fn arguments(command: &str) -> Vec<String> {
     let mut arguments = vec![String::new()];
     let mut quote = None;
     for c in command.chars() {

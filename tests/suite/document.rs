@@ -250,8 +250,8 @@ fn turning_the_model_is_turning_all_else_back() {
         [0.0; 3],
     );
     let back = turned(&both, Turn::Light, 1, 6, [0.0; 3]);
-    assert!((back.camera.yaw_deg - document.camera.yaw_deg).abs() < 1e-9);
-    assert!((back.lighting.rotation_deg - document.lighting.rotation_deg).abs() < 1e-4);
+    near!(back.camera.yaw_deg, document.camera.yaw_deg, 1e-9);
+    near!(back.lighting.rotation_deg, document.lighting.rotation_deg, 0.0001);
     let yaws = [&back, &document].map(|document| document.lighting.area_lights[0].yaw_deg);
-    assert!((yaws[0] - yaws[1]).abs() < 1e-9);
+    near!(yaws[0], yaws[1], 1e-9);
 }

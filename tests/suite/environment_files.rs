@@ -1,5 +1,6 @@
 //! Environments from files: what is read right, what is mended, and what is refused in one clear line.
 
+use crate::cli_support::Workplace;
 use std::path::{Path, PathBuf};
 
 use exr::meta::attribute::EnvironmentMap;
@@ -13,7 +14,6 @@ use glossmith::{
     scene::environment::{Environment, EnvironmentSource, environment_radiance},
 };
 use image::codecs::hdr::HdrEncoder;
-use tempfile::TempDir;
 
 const WIDTH: usize = 16;
 const HEIGHT: usize = 8;
@@ -39,8 +39,8 @@ fn assert_says(error: &str, parts: &[&str]) {
     }
 }
 
-fn write_bytes(folder: &TempDir, name: &str, bytes: &[u8]) -> PathBuf {
-    let path = folder.path().join(name);
+fn write_bytes(folder: &Workplace, name: &str, bytes: &[u8]) -> PathBuf {
+    let path = folder.path(name);
     std::fs::write(&path, bytes).expect("a writable folder");
     path
 }
@@ -89,8 +89,8 @@ fn exr_layer(
     Layer::new((WIDTH, HEIGHT), attributes, encoding, AnyChannels::sort(list))
 }
 
-fn exr_file(folder: &TempDir, name: &str, names: &[(&str, usize)], kind: &str, compression: Compression) -> PathBuf {
-    let path = folder.path().join(name);
+fn exr_file(folder: &Workplace, name: &str, names: &[(&str, usize)], kind: &str, compression: Compression) -> PathBuf {
+    let path = folder.path(name);
     let layer = exr_layer(names, kind, compression, LayerAttributes::default());
     Image::from_layer(layer)
         .write()
@@ -137,7 +137,7 @@ fn names_are_read_and_written() {
 
 #[test]
 fn hdr_files_are_read() {
-    let folder = TempDir::new().unwrap();
+    let folder = Workplace::new();
     let bytes = hdr_bytes(WIDTH, HEIGHT);
     let environment = load_file(&write_bytes(&folder, "a.hdr", &bytes)).unwrap();
     assert_shows(&environment, 1.0, [0, 1, 2]);
@@ -147,7 +147,7 @@ fn hdr_files_are_read() {
 /// What Radiance's programs say before the pixels, and editors make of it.
 #[test]
 fn hdr_headers_are_heeded() {
-    let folder = TempDir::new().unwrap();
+    let folder = Workplace::new();
     let format = "FORMAT=32-bit_rle_rgbe";
     for (name, header, expected) in [
         (
@@ -186,10 +186,7 @@ fn hdr_headers_are_heeded() {
         let bytes = [header.as_bytes(), &[128, 64, 32, 129].repeat(2)].concat();
         let environment = load_file(&write_bytes(&folder, "a.hdr", &bytes)).unwrap();
         for (found, expected) in std::iter::zip(environment.texels[1], expected) {
-            assert!(
-                (found - expected).abs() < 1e-3,
-                "{name}: {found} in place of {expected}"
-            );
+            near!(found, expected, 0.001, "{name}");
         }
     }
 }
@@ -197,8 +194,8 @@ fn hdr_headers_are_heeded() {
 /// Which half of which face lies where (OpenEXR, `CubeMap::pixelPosition`).
 #[test]
 fn exr_cubes_have_their_own_orientation() {
-    let folder = TempDir::new().unwrap();
-    let (path, side) = (folder.path().join("cube.exr"), 32);
+    let folder = Workplace::new();
+    let (path, side) = (folder.path("cube.exr"), 32);
     let attributes = LayerAttributes {
         environment_map: Some(EnvironmentMap::Cube),
         ..LayerAttributes::default()
@@ -225,17 +222,14 @@ fn exr_cubes_have_their_own_orientation() {
     for (face, [x, y, z]) in lower_right.into_iter().enumerate() {
         let found = environment_radiance(&environment, vec3(x, y, z).normalize()).to_f32();
         for (found, expected) in std::iter::zip(found, [face as f32, 1.0, 1.0]) {
-            assert!(
-                (found - expected).abs() < 1e-3,
-                "face {face}: {found} in place of {expected}"
-            );
+            near!(found, expected, 0.001, "face {face}");
         }
     }
 }
 
 #[test]
 fn exr_files_are_read_in_every_supported_compression_and_number_type() {
-    let folder = TempDir::new().unwrap();
+    let folder = Workplace::new();
     let lossless = [
         Compression::Uncompressed,
         Compression::RLE,
@@ -253,7 +247,7 @@ fn exr_files_are_read_in_every_supported_compression_and_number_type() {
 
 #[test]
 fn exr_channels_are_chosen() {
-    let folder = TempDir::new().unwrap();
+    let folder = Workplace::new();
     let zip = Compression::ZIP16;
     for (channels, kind, shown) in [
         (
@@ -286,10 +280,10 @@ fn exr_channels_are_chosen() {
 
 #[test]
 fn exr_pixels_go_where_the_windows_say() {
-    let folder = TempDir::new().unwrap();
+    let folder = Workplace::new();
     let attributes = LayerAttributes::default().with_position(Vec2(7, -3));
     let layer = exr_layer(&RGB, "float", Compression::ZIP16, attributes);
-    let path = folder.path().join("window.exr");
+    let path = folder.path("window.exr");
     // A display window of 20 × 10 whose corner is at (5, −1): two columns are missing on the left, two rows above it.
     let display = IntegerBounds::new(Vec2(5, -1), Vec2(20, 10));
     Image::new(ImageAttributes::new(display), layer)
@@ -314,7 +308,7 @@ fn exr_pixels_go_where_the_windows_say() {
 
 #[test]
 fn values_that_are_no_radiance_are_replaced_and_counted() {
-    let folder = TempDir::new().unwrap();
+    let folder = Workplace::new();
     let mut values = vec![2.0_f32; WIDTH * HEIGHT];
     values[0] = f32::NAN;
     values[1] = -1.0;
@@ -329,7 +323,7 @@ fn values_that_are_no_radiance_are_replaced_and_counted() {
         Encoding::UNCOMPRESSED,
         channels,
     );
-    let path = folder.path().join("odd.exr");
+    let path = folder.path("odd.exr");
     Image::from_layer(layer).write().to_file(&path).unwrap();
     let environment = load_file(&path).unwrap();
     let found: Vec<f32> = environment.texels[..6].iter().map(|texel| texel[0]).collect();
@@ -350,7 +344,7 @@ fn values_that_are_no_radiance_are_replaced_and_counted() {
 
 #[test]
 fn odd_shapes_are_shown_with_a_warning() {
-    let folder = TempDir::new().unwrap();
+    let folder = Workplace::new();
     let square = load_file(&write_bytes(&folder, "square.hdr", &hdr_bytes(12, 12))).unwrap();
     assert_says(&square.warnings.join(" "), &["12 × 12", "twice as wide"]);
     let dot = load_file(&write_bytes(&folder, "dot.hdr", &hdr_bytes(1, 1))).unwrap();
@@ -359,8 +353,8 @@ fn odd_shapes_are_shown_with_a_warning() {
 
 #[test]
 fn what_is_no_environment_is_refused() {
-    let folder = TempDir::new().unwrap();
-    std::fs::create_dir(folder.path().join("folder.hdr")).unwrap();
+    let folder = Workplace::new();
+    std::fs::create_dir(folder.path("folder.hdr")).unwrap();
     let text = &b"Dear reader, this is a letter and no picture.\n"[..];
     for (name, contents, parts) in [
         ("text.exr", Some(text), ["not an OpenEXR file", "first bytes"]),
@@ -375,6 +369,10 @@ fn what_is_no_environment_is_refused() {
         ("folder.hdr", None, ["folder without six images", "px, nx"]),
     ] {
         let path = contents.map(|bytes| write_bytes(&folder, name, bytes));
-        assert_says(&refusal(&path.unwrap_or_else(|| folder.path().join(name))), &parts);
+        assert_says(&refusal(&path.unwrap_or_else(|| folder.path(name))), &parts);
     }
+    // More than any memory; on the disk it is a hole.
+    let vast = folder.path("vast.hdr");
+    std::fs::File::create(&vast).unwrap().set_len(1 << 42).unwrap();
+    assert_says(&refusal(&vast), &["is not loaded"]);
 }

@@ -35,7 +35,7 @@ fn density_is_the_luminance_of_the_bilinear_picture() {
     }
     for ratio in &ratios {
         // To the nearest of the 2²⁴ numbers that draw a cell of its row, and a row.
-        assert_near(ratio / ratios[0], 1.0, 1e-4, "density over mean luminance of a cell");
+        assert_near(ratio / ratios[0], 1.0, 0.0001, "density over mean luminance of a cell");
     }
 }
 
@@ -86,8 +86,11 @@ fn samples_follow_the_density() {
     ];
     for (name, environment, block, is_alone) in &cases {
         let [right, tampered] = p_values(environment.distribution(*is_alone), *block);
-        assert!(right > 1e-3, "{name}: p = {right}");
-        assert!(tampered < 1e-3, "{name}: a tampered density passed with p = {tampered}");
+        assert!(right > 0.001, "{name}: p = {right}");
+        assert!(
+            tampered < 0.001,
+            "{name}: a tampered density passed with p = {tampered}"
+        );
     }
 }
 
@@ -107,7 +110,7 @@ fn what_lobes_find_as_well_is_left_to_them() {
     assert!(
         cells
             .iter()
-            .all(|cell| (f64::from(cell.density) * 4.0 * PI - 1.0).abs() < 1e-3)
+            .all(|cell| (f64::from(cell.density) * 4.0 * PI - 1.0).abs() < 0.001)
     );
 }
 
@@ -172,7 +175,7 @@ fn check(weights: &[f64]) {
         let lower = index.checked_sub(1).map_or(0, |before| shares[before].upper);
         let own = f64::from(shares[index].upper - lower);
         assert_eq!(own > 0.0, *weight > 0.0);
-        assert!((own - fair(*weight)).abs() <= 1.0 + raised, "{index}: {own}");
+        near!(own, fair(*weight), 1.0 + raised, "{index}");
     }
 }
 
@@ -184,7 +187,7 @@ fn numbers_are_shared_out_in_proportion_and_each_draws_its_entry() {
     let weights: Vec<f64> = (0..1501).map(|i| f64::from(i * 7919 % 83) * 0.3).collect();
     check(&weights);
     // A sun: all others share a slot.
-    let sun: Vec<f64> = (0..2048).map(|i| if i == 700 { 1e9 } else { 1e-3 }).collect();
+    let sun: Vec<f64> = (0..2048).map(|i| if i == 700 { 1e9 } else { 0.001 }).collect();
     check(&sun);
 }
 

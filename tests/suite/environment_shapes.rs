@@ -1,6 +1,7 @@
 //! Environments in other shapes than a lat-long map of rows from the top: old run lengths, cube maps, pictures for
 //! screens, pictures too large to keep.
 
+use crate::cli_support::Workplace;
 use std::path::Path;
 
 use glossmith::{
@@ -9,7 +10,6 @@ use glossmith::{
     scene::environment::{Environment, EnvironmentEncoding, EnvironmentSource, environment_radiance},
 };
 use image::{DynamicImage, ImageBuffer, Rgb};
-use tempfile::TempDir;
 
 fn load_file(path: &Path) -> Environment {
     load(&EnvironmentSource::File(path.to_owned())).expect("loads")
@@ -17,8 +17,8 @@ fn load_file(path: &Path) -> Environment {
 
 #[test]
 fn old_run_lengths_and_xyz_are_read() {
-    let folder = TempDir::new().unwrap();
-    let path = folder.path().join("old.hdr");
+    let folder = Workplace::new();
+    let path = folder.path("old.hdr");
     // A pixel, then five more like it: (1, 1, 1, 5); and a run longer than a byte holds, in two parts: 256 + 3.
     let mut bytes = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 266\n".to_vec();
     bytes.extend([7, 9, 11, 129, 1, 1, 1, 5, 20, 30, 40, 130, 1, 1, 1, 3, 1, 1, 1, 1]);
@@ -41,7 +41,7 @@ fn old_run_lengths_and_xyz_are_read() {
 }
 
 /// The colours of the faces +X, −X, +Y, −Y, +Z, −Z of OpenGL's order.
-pub(super) const FACES: [[f32; 3]; 6] = [
+pub const FACES: [[f32; 3]; 6] = [
     [1.0, 0.0, 0.0],
     [0.0, 1.0, 0.0],
     [0.0, 0.0, 1.0],
@@ -51,7 +51,7 @@ pub(super) const FACES: [[f32; 3]; 6] = [
 ];
 
 /// Ahead, to the right, above and so on of somebody who looks along +Z of our world, whose right is −X.
-pub(super) fn assert_is_that_cube(environment: &Environment, what: &str) {
+pub fn assert_is_that_cube(environment: &Environment, what: &str) {
     let looks = [
         ([-1.0, 0.0, 0.0], 0),
         ([1.0, 0.0, 0.0], 1),
@@ -80,7 +80,7 @@ fn cube_picture(side: u32, size: [u32; 2], places: [[u32; 2]; 6]) -> DynamicImag
 
 #[test]
 fn cube_maps_are_unfolded() {
-    let folder = TempDir::new().unwrap();
+    let folder = Workplace::new();
     let strip = [0, 1, 2, 3, 4, 5];
     let shapes = [
         ("strip.png", [6, 1], strip.map(|face| [face, 0])),
@@ -89,14 +89,14 @@ fn cube_maps_are_unfolded() {
         ("tall.png", [3, 4], [[2, 1], [0, 1], [1, 0], [1, 2], [1, 1], [1, 3]]),
     ];
     for (name, size, places) in shapes {
-        let path = folder.path().join(name);
+        let path = folder.path(name);
         cube_picture(8, size, places).save(&path).unwrap();
         let environment = load_file(&path);
         assert_eq!((environment.width, environment.height), (32, 16), "{name}");
         assert_is_that_cube(&environment, name);
     }
     // Six files in a folder.
-    let faces = folder.path().join("faces");
+    let faces = folder.path("faces");
     std::fs::create_dir(&faces).unwrap();
     for (face, name) in ["px", "nx", "py", "ny", "pz", "nz"].into_iter().enumerate() {
         let color = FACES[face].map(|channel| (255.0 * channel) as u8);
@@ -105,7 +105,7 @@ fn cube_maps_are_unfolded() {
     }
     assert_is_that_cube(&load_file(&faces), "six files");
     // A panorama of a cross's shape, with something in its corners, stays a panorama.
-    let path = folder.path().join("odd.png");
+    let path = folder.path("odd.png");
     let picture = ImageBuffer::from_fn(32, 24, |x, y| Rgb([(8 * x) as u8, (8 * y) as u8, 77u8]));
     picture.save(&path).unwrap();
     assert_eq!(load_file(&path).width, 32);
@@ -113,7 +113,7 @@ fn cube_maps_are_unfolded() {
 
 #[test]
 fn pictures_for_screens_are_decoded_or_taken_as_light() {
-    let folder = TempDir::new().unwrap();
+    let folder = Workplace::new();
     let color = [188u8, 128, 55];
     let deep = color.map(|code| u16::from(code) * 257);
     let shallow = DynamicImage::ImageRgb8(ImageBuffer::from_pixel(16, 8, Rgb(color)));
@@ -127,7 +127,7 @@ fn pictures_for_screens_are_decoded_or_taken_as_light() {
         ("a.webp", &shallow, 1e-5),
         ("a.jpg", &shallow, 0.03),
     ] {
-        let path = folder.path().join(name);
+        let path = folder.path(name);
         picture.save(&path).unwrap();
         let shown = load_file(&path);
         let source = EnvironmentSource::File(path.clone());
@@ -136,10 +136,7 @@ fn pictures_for_screens_are_decoded_or_taken_as_light() {
             let expected = [display(code).powf(2.4), f64::from(code) / 255.0];
             let found = [&shown, &linear].map(|map| f64::from(map.texels[37][channel]));
             for (found, expected) in found.into_iter().zip(expected) {
-                assert!(
-                    (found - expected).abs() < tolerance,
-                    "{name}: {found} instead of {expected}"
-                );
+                near!(found, expected, tolerance, "{name}");
             }
         }
         assert!(
@@ -153,8 +150,8 @@ fn pictures_for_screens_are_decoded_or_taken_as_light() {
 
 #[test]
 fn pictures_too_large_to_keep_are_made_smaller() {
-    let folder = TempDir::new().unwrap();
-    let path = folder.path().join("wide.png");
+    let folder = Workplace::new();
+    let path = folder.path("wide.png");
     // Stripes of one texel, and an odd width that halving does not divide.
     let picture = ImageBuffer::from_fn(8195, 2, |x, _| Rgb([if x % 2 == 0 { 255u8 } else { 0 }; 3]));
     picture.save(&path).unwrap();

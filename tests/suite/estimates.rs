@@ -58,11 +58,8 @@ fn the_error_of_known_noise() {
         let (film, squared_error) = half_noisy(samples, seed);
         let found = noise(&film).unwrap();
         let expected = 0.3 / f64::from(2 * samples).sqrt();
-        assert!((found.relative / expected - 1.0).abs() < 0.12, "{found:?} {expected}");
-        assert!(
-            (found.from_spread / expected - 1.0).abs() < 0.05,
-            "{found:?} {expected}"
-        );
+        near!(found.relative / expected, 1.0, 0.12);
+        near!(found.from_spread / expected, 1.0, 0.05);
         inside += usize::from((found.low..=found.high).contains(&squared_error.sqrt()));
     }
     assert!((53..=60).contains(&inside), "{inside} of 60");
@@ -116,7 +113,7 @@ fn maps_and_tiles_show_where_the_error_is() {
     let squares: f64 = errors.iter().map(|error| f64::from(*error).powi(2)).sum();
     let estimate = noise(&film).unwrap().relative;
     let of_map = (squares / f64::from(SIDE * SIDE)).sqrt();
-    assert!((of_map / estimate - 1.0).abs() < 0.1, "{of_map} {estimate}");
+    near!(of_map / estimate, 1.0, 0.1);
     assert!(errors.iter().step_by(SIDE as usize).all(|error| *error < 1e-6));
     // The tiles in the middle column are half noisy.
     for row in tile_errors(&film).chunks(5) {
@@ -172,7 +169,7 @@ fn samples_go_where_they_help_most() {
         noise: Some(noise),
         ..ROUND
     };
-    let far = goals(towards(1e-4));
+    let far = goals(towards(0.0001));
     assert!(far.iter().all(|goal| *goal <= 32), "{far:?}");
     assert!(far.iter().sum::<u32>() > 36 * 16 * 3 / 2, "{far:?}");
     let near = goals(towards(0.98 * noise(&film).unwrap().relative));
@@ -267,7 +264,7 @@ fn the_error_of_a_denoised_image_is_the_true_one() {
         truth += true_error.powi(2);
         bias += errors.bias(None).value.powi(2) / f64::from(RENDERS);
     }
-    assert!((estimated / truth - 1.0).abs() < 0.1, "{estimated} {truth}");
+    near!(estimated / truth, 1.0, 0.1);
     // Errors are not quite normal: 93 % in the mean, and the standard deviation of such a count is 0.8 %.
     assert!(f64::from(inside) >= 0.91 * f64::from(RENDERS), "{inside} of {RENDERS}");
     // What is below 0 is cut off, and what is left is a little too large.
@@ -324,17 +321,17 @@ fn halves(luminance: f64, noise: f64, seed: u32) -> Halves {
 #[test]
 fn differences_of_renders_are_measured_without_their_noise() {
     // 6 % apart, with 20 % noise: in the sum of squares of a plain difference the noise would rule. The products' mean has
-    // a standard error of 8e-4.
+    // a standard error of 0.0008.
     let found = halves(1.06, 0.2, 1).distance(&halves(1.0, 0.2, 2));
     assert!((found.value - 0.06).abs() < 0.02 && found.is_resolved(), "{found:?}");
     let none = halves(1.0, 0.2, 1).distance(&halves(1.0, 0.2, 2));
     assert!(!none.is_resolved() && none.high < 0.07, "{none:?}");
     // Noise in common does not count; the mean that it is relative to has noise itself.
     let found = halves(1.01, 0.2, 1).distance(&halves(1.0, 0.2, 1));
-    assert!((found.value - 0.01).abs() < 1e-4 && found.is_resolved(), "{found:?}");
+    assert!((found.value - 0.01).abs() < 0.0001 && found.is_resolved(), "{found:?}");
     // The error of an image is its own noise alone.
     let found = halves(1.0, 0.3, 4).error_of(&halves(1.0, 0.1, 3).even);
-    assert!((found.value - 0.1).abs() < 0.02, "{found:?}");
+    near!(found.value, 0.1, 0.02);
     assert!(found.low < 0.1 && found.high > 0.1, "{found:?}");
 }
 
@@ -361,8 +358,8 @@ fn the_z_test_accepts_noise_and_finds_a_bias_below_it() {
         z_test(a, b)
     };
     let same = compare(0.0);
-    assert!(same.p_value > 1e-3 && same.p_value < 0.999, "{same:?}");
-    assert!((same.beyond_three_sigma - 0.0027).abs() < 0.0015, "{same:?}");
+    assert!(same.p_value > 0.001 && same.p_value < 0.999, "{same:?}");
+    near!(same.beyond_three_sigma, 0.0027, 0.0015);
     // A third of a standard deviation everywhere is invisible in a pixel and certain over the image.
     let biased = compare(0.035);
     assert!(biased.p_value < 1e-6, "{biased:?}");
@@ -373,7 +370,7 @@ fn the_z_test_accepts_noise_and_finds_a_bias_below_it() {
     assert_eq!(z_test(exact(&[f64::NAN]), exact(&[1.0])).p_value, 0.0);
     // (0.1)²/(0.09 + 0.01) and 0: mean 0.05.
     let error = relative_mean_squared_error(&[0.4, 2.0], &[0.3, 2.0]);
-    assert!((error - 0.05).abs() < 1e-6, "{error}");
+    near!(error, 0.05, 1e-6);
 }
 
 fn grey(values: &[f32]) -> Image {
@@ -389,7 +386,7 @@ fn differences_are_signed_relative_and_coloured_by_their_sign() {
     let found = difference(&grey(&[1.0, 2.0]), &grey(&[1.5, 1.0])).expect("equal sizes");
     assert!((found.signed[0] - 0.5).abs() < 1e-6 && (found.signed[1] + 1.0).abs() < 1e-6);
     let expected = (0.5_f64 * (0.25 / 1.01 + 1.0 / 4.01)).sqrt();
-    assert!((found.rms_relative - expected).abs() < 1e-6, "{}", found.rms_relative);
+    near!(found.rms_relative, expected, 1e-6);
     assert_eq!(difference(&grey(&[1.0]), &grey(&[1.0, 1.0])), None);
     let none = difference(&grey(&[3.0]), &grey(&[3.0])).expect("equal sizes");
     assert!(none.rms_relative == 0.0 && none.automatic_scale() > 0.0);

@@ -39,9 +39,11 @@ pub fn evaluate(place: &Workplace, arguments: &str) -> Table {
 fn assert_near(values: &[f64], expected: &[f64], tolerance: f64, what: &str) {
     assert_eq!(values.len(), expected.len(), "{what}");
     for (row, (value, expected)) in values.iter().zip(expected).enumerate() {
-        assert!(
-            (value - expected).abs() <= tolerance * expected.abs().max(1e-3),
-            "{what}, row {row}: {value} for {expected}"
+        near!(
+            value,
+            expected,
+            tolerance * expected.abs().max(0.001),
+            "{what}, row {row}"
         );
     }
 }
@@ -51,7 +53,7 @@ fn a_matt_surface_has_the_values_of_lambert() {
     let place = Workplace::new();
     let table =
         "# any comment\nname,phi_i,theta_i,theta_o,phi_o\na,0,0,0,0\nb,90,60,30,10\nc,180,80,89,0\nd,0,120,30,0\n";
-    place.write("pairs.csv", table.as_bytes());
+    place.write("pairs.csv", table);
     let expected: Vec<f64> = [0.0_f64, 60.0, 80.0]
         .map(|theta| theta.to_radians().cos() * FRAC_1_PI)
         .into_iter()
@@ -110,16 +112,8 @@ fn values_add_up_to_the_albedo() {
             let green = values.column("g");
             let [reflected, transmitted] = ["R_g", "T_g"].map(|column| albedos.column(column)[index]);
             let what = format!("{material}, {side}, view {view}");
-            assert!(
-                (sum(&green, false) - reflected).abs() < 0.01,
-                "{what}: {} for {reflected}",
-                sum(&green, false)
-            );
-            assert!(
-                (sum(&green, true) - transmitted).abs() < 0.01,
-                "{what}: {} for {transmitted}",
-                sum(&green, true)
-            );
+            near!(sum(&green, false), reflected, 0.01, "{what}");
+            near!(sum(&green, true), transmitted, 0.01, "{what}");
         }
     }
 }

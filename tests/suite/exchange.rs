@@ -3,18 +3,19 @@
 use glossmith::{
     compile::compile,
     document::MaterialSettings,
+    import::load,
     matching::lobe_of_material,
     optics::{fresnel::fresnel, lobe::model::LobeModel, vector::vec3},
+    scene::{ModelSource, texture::TextureTarget, texture::UserTexture},
     store::{
         PRESETS,
-        exchange::FORMATS,
+        exchange::{FORMATS, Subject, by_name, endings_written, prepare, report::Outcome},
         preset::{command_line_name, load_material, material_text},
-        save_material,
     },
 };
 use serde_json::Value as Json;
 
-use crate::cli_support::Workplace;
+use crate::{cli_support::Workplace, renders::material};
 
 /// What a material looks like: all but what its file had beside it.
 fn text(material: &MaterialSettings) -> String {
@@ -46,7 +47,7 @@ fn every_preset_comes_back_from_every_format_as_it_was() {
         let files: Vec<String> = names.iter().map(|name| format!("{format}/{name}.{ending}")).collect();
         place.done(&format!("convert {} {format}-back --to glossmith", files.join(" ")));
         for (material, name) in materials.iter().zip(&names) {
-            let back = load_material(&place.path(&format!("{format}-back/{name}.json")))
+            let back = load_material(&place.path(format!("{format}-back/{name}.json")))
                 .unwrap()
                 .value;
             assert_eq!(text(&back), text(material), "{name} by way of {format}");
@@ -77,11 +78,11 @@ fn without_the_exact_parameters_what_is_shown_comes_back() {
         fresnel: glossmith::optics::fresnel::Fresnel::Dielectric,
         ..MaterialSettings::default()
     };
-    save_material(&place.path("a.json"), &material).unwrap();
+    place.save_material("a.json", &material);
     for (format, ending) in [("materialx", "mtlx"), ("standard-surface", "mtlx"), ("gltf", "glb")] {
         place.done(&format!("convert a.json a.{ending} --to {format}"));
         place.done(&format!("convert a.{ending} b.json --without-exact --import-lobe ggx"));
-        let back = load_material(&place.path("b.json")).unwrap().value;
+        let back = place.material("b.json");
         assert_eq!(back.name, material.name, "{format}");
         let numbers = |m: &MaterialSettings| {
             [
@@ -102,10 +103,7 @@ fn without_the_exact_parameters_what_is_shown_comes_back() {
             ]
         };
         for (i, (a, b)) in numbers(&material).into_iter().zip(numbers(&back)).enumerate() {
-            assert!(
-                (a - b).abs() < 2e-3 * (1.0 + a.abs()),
-                "{format}, number {i}: {a} came back as {b}"
-            );
+            near!(a, b, 0.002 * (1.0 + a.abs()), "{format}, number {i}");
         }
     }
 }
@@ -168,7 +166,7 @@ fn every_preset_comes_back_within_the_stated_loss_from_what_a_file_shows() {
             files.join(" ")
         ));
         for (index, (material, name)) in PRESETS.iter().zip(&names).enumerate() {
-            let back = load_material(&place.path(&format!("{format}-back/{name}.json")))
+            let back = load_material(&place.path(format!("{format}-back/{name}.json")))
                 .unwrap()
                 .value;
             let entries = told[index]["materials"][0]["entries"].as_array().unwrap();
@@ -179,10 +177,7 @@ fn every_preset_comes_back_within_the_stated_loss_from_what_a_file_shows() {
             let [own, shown] = [material, &back].map(lobe_of_material);
             if let Some(stated) = stated("highlight") {
                 let found = total_variation(&own, &shown);
-                assert!(
-                    (found - stated).abs() < 0.02,
-                    "{format}, {name}: {found} and {stated} stated"
-                );
+                near!(found, stated, 0.02, "{format}, {name}");
             }
             let is_specular = material.specular_weight > 0.0 || material.transmission_weight > 0.0;
             if is_specular {
@@ -196,10 +191,82 @@ fn every_preset_comes_back_within_the_stated_loss_from_what_a_file_shows() {
                 (material.anisotropy, back.anisotropy),
                 (material.opacity, back.opacity),
             ] {
-                assert!((a - b).abs() < 2e-3, "{format}, {name}: {a} came back as {b}");
+                near!(a, b, 0.002, "{format}, {name}");
             }
         }
     }
+}
+
+#[test]
+fn what_is_lost_is_told_and_shown() {
+    for (format, assignments, part, outcome) in [
+        ("blender", "specular.anisotropy=0.5", "anisotropy", Outcome::Exact),
+        (
+            "blender",
+            "thin_film.weight=0.5",
+            "the thin film's weight",
+            Outcome::Dropped,
+        ),
+        ("materialx", "base.metalness=0", "reflectance by angle", Outcome::Exact),
+        (
+            "mitsuba",
+            "specular.multiple_scattering=on",
+            "multiple scattering between facets",
+            Outcome::Dropped,
+        ),
+    ] {
+        let subject = Subject::of(material(&format!(
+            "specular.lobe=ggx specular.fresnel=dielectric {assignments}"
+        )));
+        let told = prepare(&subject, "a", "a".as_ref(), by_name(format).unwrap())
+            .unwrap()
+            .report;
+        let told = &told.materials[0];
+        let found = told.entries.iter().find(|entry| entry.what == part);
+        assert_eq!(
+            found.map(|entry| entry.outcome),
+            Some(outcome),
+            "{assignments}: {found:?}"
+        );
+        let [_, shown] = &**told.looks.as_ref().unwrap();
+        assert_eq!(shown.film_weight, f32::from(part.contains("film")), "{assignments}");
+    }
+}
+
+#[test]
+fn own_roughness_and_metalness_are_channels_of_one_texture_in_gltf() {
+    let place = Workplace::new();
+    let mut material = material("specular.lobe=ggx");
+    for (target, code) in [(TextureTarget::Roughness, 51), (TextureTarget::Metalness, 204)] {
+        let file = place.path(format!("{code}.png"));
+        image::GrayImage::from_pixel(1, 1, image::Luma([code]))
+            .save(&file)
+            .unwrap();
+        material.put_texture(target, UserTexture::of(file));
+    }
+    place.save_material("a.json", &material);
+    place.done("convert a.json a.glb");
+    let model = load(&ModelSource::File(place.path("a.glb"))).unwrap();
+    let texture = model.slots[0].texture(TextureTarget::Roughness).expect("is there");
+    assert_eq!(model.textures[texture.texture].rgba8[1..3], [51, 204]);
+}
+
+#[test]
+fn what_is_only_written_is_what_the_material_is() {
+    let place = Workplace::new();
+    place.done("convert gold a.csv");
+    let table = place.read("a.csv");
+    // Seen from above, the highlight is round.
+    let lines = table.lines().filter(|line| line.starts_with("0,3,"));
+    let values: Vec<f64> = lines
+        .map(|line| line.split(',').nth(3).unwrap().parse().unwrap())
+        .collect();
+    assert!(
+        values.len() > 1 && values.iter().all(|value| (value / values[0] - 1.0).abs() < 1e-6),
+        "{values:?}"
+    );
+    place.done("convert gold a.py");
+    assert!(!place.read("a.py").contains("Thin Film"), "gold has none");
 }
 
 #[test]
@@ -219,10 +286,10 @@ fn a_file_that_was_edited_elsewhere_is_taken_as_it_is() {
         place.done(&format!("convert gold {name} --to {format}"));
         let text = place.read(&name);
         assert!(text.contains(from), "{text}");
-        place.write(&name, text.replace(from, to).as_bytes());
+        place.write(&name, text.replace(from, to));
         let run = place.done(&format!("convert {name} gold.json"));
         assert!(run.stderr.contains("changed since"), "{}", run.stderr);
-        assert_eq!(load_material(&place.path("gold.json")).unwrap().value.metalness, 0.25);
+        assert_eq!(place.material("gold.json").metalness, 0.25);
     }
 }
 
@@ -233,6 +300,8 @@ fn documents_that_include_others_are_read_whole() {
     image::RgbImage::from_pixel(2, 2, image::Rgb([51, 102, 153]))
         .save(place.path("parts/maps/a.png"))
         .unwrap();
+    let bumps = image::RgbImage::from_fn(2, 1, |x, _| image::Rgb([128 + x as u8, 128, 255]));
+    bumps.save(place.path("parts/maps/b.png")).unwrap();
     let include = |name: &str| {
         format!(
             "<?xml version=\"1.0\"?>\n<materialx version=\"1.39\" xmlns:xi=\"http://www.w3.org/2001/XInclude\">\n  \
@@ -244,30 +313,39 @@ fn documents_that_include_others_are_read_whole() {
   <standard_surface name="s" type="surfaceshader">
     <input name="base_color" type="color3" nodename="picture" />
     <input name="specular_color" type="color3" nodename="grey" />
-    <input name="metalness" type="float" value="0" />
+    <input name="metalness" type="float" value="1" />
+    <input name="coat_normal" type="vector3" nodename="bumps" />
   </standard_surface>
+  <normalmap name="bumps" type="vector3"><input name="in" type="vector3" nodename="codes" /><input name="scale" type="float" value="0.25" /></normalmap>
+  <image name="codes" type="vector3"><input name="file" type="filename" value="b.png" /></image>
   <image name="picture" type="color3"><input name="file" type="filename" value="a.png" colorspace="lin_rec709" /></image>
   <surfacematerial name="M" type="material"><input name="surfaceshader" type="surfaceshader" nodename="s" /></surfacematerial>
 </materialx>"#;
     let colours = r#"<materialx><constant name="grey" type="color3" colorspace="lin_rec709"><input name="value" type="color3" value="0.5, 0.5, 0.5" /></constant></materialx>"#;
-    place.write("whole.mtlx", include("parts/part.mtlx").as_bytes());
-    place.write("parts/part.mtlx", part.as_bytes());
-    place.write("parts/colours.mtlx", colours.as_bytes());
+    place.write("whole.mtlx", include("parts/part.mtlx"));
+    place.write("parts/part.mtlx", part);
+    place.write("parts/colours.mtlx", colours);
     place.done("convert whole.mtlx m.json --import-lobe ggx");
-    let material = load_material(&place.path("m.json")).unwrap().value;
+    let material = place.material("m.json");
     assert_eq!(material.base_color, [0.2, 0.4, 0.6]);
-    assert_eq!(material.specular_color, [0.5; 3]);
+    // Gulbrandsen's index and absorption of 0.4 and 0.5.
+    assert!(
+        (material.edge_tint[1] - 0.83361).abs() < 1e-4,
+        "{:?}",
+        material.edge_tint
+    );
+    assert_eq!(material.coat_normal_strength, 0.25);
     // What cannot be had is named; nothing is fetched from elsewhere.
     for (name, words) in [
         ("none.mtlx", "none.mtlx"),
         ("/etc/hostname", "from the document's folder"),
         ("http://x.y/z.mtlx", "from the document's folder"),
     ] {
-        place.write("whole.mtlx", include(name).as_bytes());
+        place.write("whole.mtlx", include(name));
         place.refused(1, "convert whole.mtlx m.json", &["whole.mtlx", words]);
     }
     // A document that includes itself is read once.
-    place.write("whole.mtlx", include("whole.mtlx").as_bytes());
+    place.write("whole.mtlx", include("whole.mtlx"));
     place.refused(1, "convert whole.mtlx m.json", &["whole.mtlx", "no <surfacematerial>"]);
 }
 
@@ -280,9 +358,9 @@ pub fn read_surface(place: &Workplace, node: &str, numbers: &[(&str, f32)]) -> M
          name=\"M\" type=\"material\"><input name=\"surfaceshader\" type=\"surfaceshader\" nodename=\"s\"/>\
          </surfacematerial></materialx>"
     );
-    place.write("s.mtlx", document.as_bytes());
+    place.write("s.mtlx", document);
     place.done("convert s.mtlx s.json --import-lobe ggx");
-    load_material(&place.path("s.json")).unwrap().value
+    place.material("s.json")
 }
 
 #[test]
@@ -313,13 +391,13 @@ fn surfaces_of_materialx_have_the_widths_that_their_nodes_define() {
     let material = read_surface(&place, "disney_principled", &numbers);
     let aspect = 0.5_f64.sqrt();
     for (found, wanted) in widths(&material).into_iter().zip([0.16 / aspect, 0.16 * aspect]) {
-        assert!((found / wanted - 1.0).abs() < 1e-4, "{found} and {wanted}");
+        near!(found / wanted, 1.0, 0.0001);
     }
     assert_eq!((material.coat_weight, material.specular_weight), (1.0, 1.0));
     // glTF's: α is mix(roughness², 1, strength²) along, roughness² across.
     let material = read_surface(&place, "gltf_pbr", &[("roughness", 0.4), ("anisotropy_strength", 0.5)]);
     for (found, wanted) in widths(&material).into_iter().zip([0.16 + 0.84 * 0.25, 0.16]) {
-        assert!((found / wanted - 1.0).abs() < 1e-4, "{found} and {wanted}");
+        near!(found / wanted, 1.0, 0.0001);
     }
 }
 
@@ -331,13 +409,14 @@ fn what_is_no_document_is_refused_with_the_files_name() {
     place.write("a.mtlx", b"<materialx version=\"1.39\"/>");
     place.refused(1, "convert a.mtlx b.json", &["a.mtlx", "no <surfacematerial>"]);
     place.refused(1, "convert gold b.xyz", &["b.xyz", ".mtlx"]);
+    assert!(endings_written().contains(&"mtlx"));
     place.refused(1, "convert gold silver all", &["all", "--to"]);
     place.refused(1, "convert gilt b.mtlx", &["gilt"]);
     let ggx = MaterialSettings {
         lobe: glossmith::optics::lobe::Lobe::Ggx,
         ..MaterialSettings::default()
     };
-    save_material(&place.path("ggx.json"), &ggx).unwrap();
+    place.save_material("ggx.json", &ggx);
     place.refused(1, "convert ggx.json b.glsl", &["GGX", "specular.lobe=geometric"]);
     place.refused(2, "convert gold b.mtlx --to nothing", &["nothing"]);
     place.write("a.py", b"import bpy");
@@ -346,7 +425,7 @@ fn what_is_no_document_is_refused_with_the_files_name() {
         roughness: 0.0,
         ..MaterialSettings::default()
     };
-    save_material(&place.path("mirror.json"), &mirror).unwrap();
+    place.save_material("mirror.json", &mirror);
     place.refused(1, "convert mirror.json b.binary", &["b.binary", "roughness"]);
     place.refused(1, "convert mirror.json b.csv", &["b.csv", "roughness"]);
 }

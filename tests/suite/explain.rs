@@ -26,7 +26,7 @@ fn a_path_is_told_in_words_and_as_json() {
     ] {
         assert!(words.contains(told), "{told} is missing:\n{words}");
     }
-    let account: serde_json::Value = serde_json::from_str(&place.read("path.json")).unwrap();
+    let account: serde_json::Value = place.json("path.json");
     let printed = place.done(&format!("{explain} --json -")).stdout;
     assert_eq!(serde_json::from_str::<serde_json::Value>(&printed).unwrap(), account);
     let events = account["events"].as_array().unwrap();
@@ -40,7 +40,7 @@ fn a_path_is_told_in_words_and_as_json() {
     place.done(&format!("render --engine cpu {SCENE} --samples 1 --output one.exr"));
     let [r, g, b, _] = read_exr(&place.path("one.exr")).at(12, 12);
     for (rendered, told) in [r, g, b].into_iter().zip(sum) {
-        assert!((rendered - told).abs() <= 1e-3 * told, "{rendered} {told}");
+        near!(rendered, told, 0.001 * told);
     }
 }
 

@@ -1,5 +1,6 @@
 //! Colours of OpenEXR files by the primaries that they name.
 
+use crate::cli_support::Workplace;
 use std::path::Path;
 
 use glossmith::{
@@ -10,7 +11,6 @@ use glossmith::{
     },
     scene::environment::{Environment, EnvironmentSource},
 };
-use tempfile::TempDir;
 
 const SIZE: [usize; 2] = [4, 2];
 /// Red, green, blue and white of CIE XYZ.
@@ -82,8 +82,8 @@ fn read(channels: &[Channel], chromaticities: Option<[f32; 8]>) -> Environment {
 }
 
 fn opened(channels: &[Channel], chromaticities: Option<[f32; 8]>) -> Result<Environment, EnvironmentError> {
-    let folder = TempDir::new().expect("a folder");
-    let path = folder.path().join("colour.exr");
+    let folder = Workplace::new();
+    let path = folder.path("colour.exr");
     write(&path, channels, chromaticities);
     load(&EnvironmentSource::File(path))
 }
@@ -92,7 +92,7 @@ fn opened(channels: &[Channel], chromaticities: Option<[f32; 8]>) -> Result<Envi
 fn assert_is(environment: &Environment, expected: [f32; 3]) {
     for texel in &environment.texels {
         for (found, expected) in texel.iter().zip(expected) {
-            assert!((found - expected).abs() < 1e-3, "{texel:?} in place of {expected:?}");
+            near!(found, expected, 0.001, "{texel:?} in place of {expected:?}");
         }
     }
 }
@@ -110,18 +110,22 @@ fn xyz_is_brought_to_rec_709() {
         colors.warnings
     );
     let vivid = read(&[("B", 0.0), ("G", 0.5), ("R", 0.0)], Some(XYZ));
-    let is_told = |told: &String| told.contains("more saturated than linear Rec. 709");
+    let is_told = |told: &String| told.contains("100.0 % of its colours are more saturated than linear Rec. 709");
     assert!(vivid.warnings.iter().any(is_told), "{:?}", vivid.warnings);
     // As a picture on a model, too.
-    let folder = TempDir::new().expect("a folder");
+    let folder = Workplace::new();
     let texture = |chromaticities| {
-        let path = folder.path().join("a.exr");
+        let path = folder.path("a.exr");
         write(&path, &[("B", 0.6), ("G", 0.5), ("R", 0.4)], chromaticities);
         read_texture(&path, true, 16, &Budget::of_import())
             .expect("loads")
             .rgba8
     };
     assert!(texture(None) != texture(Some(XYZ)));
+    // The longest that is read.
+    let path = folder.path("long.exr");
+    exr::prelude::write_rgb_file(&path, 1 << 15, 1, |_, _| (0.5_f32, 0.5_f32, 0.5_f32)).unwrap();
+    read_texture(&path, true, 16, &Budget::of_import()).expect("loads");
 }
 
 /// Primaries in a line span no space: the numbers stay as they are, which is told.
@@ -131,7 +135,7 @@ fn what_has_no_conversion_is_told() {
     let environment = read(&[("B", 0.6), ("G", 0.5), ("R", 0.4)], Some(line));
     let is_told = |told: &String| told.contains("no space of colours");
     assert!(environment.warnings.iter().any(is_told), "{:?}", environment.warnings);
-    assert!((environment.texels[0][1] - 0.5).abs() < 1e-3);
+    near!(environment.texels[0][1], 0.5, 0.001);
 }
 
 /// The luminance of what has chroma beside it is not the image.

@@ -1,6 +1,7 @@
 //! Each kind of file can be opened by each way that leads to it: the table of kinds is what dialogs, dropped files, watched
 //! folders, recent files, help and documents ask, and what its endings promise is read.
 
+use crate::cli_support::Workplace;
 use std::path::{Path, PathBuf};
 
 use clap::CommandFactory as _;
@@ -13,7 +14,6 @@ use glossmith::{
     store::file_kind::{FileKind, OPENED, PICTURE_KINDS, endings, may_hold_document},
 };
 use image::{ImageFormat, RgbImage};
-use tempfile::tempdir;
 
 fn corpus(file: &str) -> Vec<u8> {
     std::fs::read(Path::new(crate::ROOT).join("fuzz/corpus").join(file)).unwrap()
@@ -41,9 +41,9 @@ fn picture(ending: &str) -> Vec<u8> {
 
 #[test]
 fn every_picture_is_read_as_an_environment_and_as_a_texture() {
-    let folder = tempdir().unwrap();
+    let folder = Workplace::new();
     for ending in endings(PICTURE_KINDS) {
-        let path = folder.path().join(format!("picture.{ending}"));
+        let path = folder.path(format!("picture.{ending}"));
         std::fs::write(&path, picture(ending)).unwrap();
         let environment = glossmith::import::environment::load(&EnvironmentSource::File(path.clone()));
         assert!(

@@ -7,7 +7,7 @@ use glossmith::{
     store::exchange::{ReadOptions, SURFACES, read, report::Entry},
 };
 
-use crate::{cli_support::Workplace, gltf_builder::Folder, gltf_builder::png};
+use crate::{cli_support::Workplace, gltf_builder::png};
 
 /// Parameters with their values.
 type Values = Vec<(&'static str, &'static str)>;
@@ -61,7 +61,7 @@ fn usd(kind: &str, values: &Values) -> String {
 
 /// What a document of one material is read as.
 fn surface(place: &Workplace, name: &str, text: &str) -> (MaterialSettings, Vec<Entry>) {
-    place.write(name, text.as_bytes());
+    place.write(name, text);
     let options = ReadOptions {
         lobe: ImportLobe::Ggx,
         is_plain: true,
@@ -159,14 +159,14 @@ fn a_preview_surface_reflects_its_specular_color() {
             .zip([5.0, 1.0, 0.0])
             .map(apart)
             .fold(0.0, f32::max);
-        assert!(worst < 1e-4, "{:?}", material.specular_color);
+        assert!(worst < 0.0001, "{:?}", material.specular_color);
     }
 }
 
 /// A triangle with a library of these lines.
-fn painted(folder: &Folder, lines: &[String]) -> Model {
+fn painted(folder: &Workplace, lines: &[String]) -> Model {
     let library = format!("newmtl m\n{}\n", lines.join("\n"));
-    std::fs::write(folder.path("m.mtl"), library).unwrap();
+    folder.write("m.mtl", library);
     let obj = "mtllib m.mtl\nusemtl m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n";
     folder.load("m.obj", obj.as_bytes()).expect("loads")
 }
@@ -174,8 +174,8 @@ fn painted(folder: &Folder, lines: &[String]) -> Model {
 /// Each keyword of a library, off its default, changes the material or the report.
 #[test]
 fn no_keyword_of_a_library_is_dropped_in_silence() {
-    let folder = Folder::new();
-    std::fs::write(folder.path("picture.png"), png()).unwrap();
+    let folder = Workplace::new();
+    folder.write("picture.png", png());
     for row in MTL_PARAMETERS {
         let shiny = vec![("Ks", "0.5 0.5 0.5"), ("Ns", "10")];
         let mut plain: Values = shiny.into_iter().filter(|(key, _)| *key != row.place).collect();

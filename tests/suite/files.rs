@@ -11,7 +11,7 @@ use glossmith::{
 use proptest::prelude::*;
 use serde_json::{Map, Value as Json, json};
 
-use crate::parameters::is_in_range;
+use crate::{cli_support::Workplace, parameters::is_in_range};
 
 #[test]
 fn shipped_materials_are_in_the_format_that_is_saved() {
@@ -53,8 +53,8 @@ fn shipped_materials_are_found_by_name_and_files_by_path() {
     );
     let error = preset::find("no/such.json").expect_err("no such file").to_string();
     assert!(error.starts_with("no/such.json: cannot be read"), "{error}");
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join("mine");
+    let folder = Workplace::new();
+    let path = folder.path("mine");
     let mine = MaterialSettings {
         roughness: 0.77,
         ..MaterialSettings::default()
@@ -142,13 +142,13 @@ fn broken_material_files_are_named_with_a_remedy() {
 
 #[test]
 fn saving_replaces_a_file_at_once_and_leaves_nothing_beside_it() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join("m.json");
+    let folder = Workplace::new();
+    let path = folder.path("m.json");
     let gold = preset::material_by_name("gold").expect("shipped");
     preset::save_material(&path, gold).expect("saved");
     preset::save_material(&path, &PRESETS[0]).expect("saved over");
     assert_eq!(preset::load_material(&path).expect("read").value, PRESETS[0]);
-    assert_eq!(fs::read_dir(folder.path()).expect("listed").count(), 1);
+    assert_eq!(fs::read_dir(folder.root()).expect("listed").count(), 1);
 
     // Who has opened the file before keeps seeing the whole old contents: the file is replaced, not written over.
     let old = fs::File::open(&path).expect("opened");
@@ -157,25 +157,32 @@ fn saving_replaces_a_file_at_once_and_leaves_nothing_beside_it() {
     assert_eq!(old_text, preset::material_text(std::path::Path::new(""), &PRESETS[0]));
 
     // Where saving fails, nothing is left behind.
-    let blocked = folder.path().join("folder.json");
+    let blocked = folder.path("folder.json");
     fs::create_dir_all(blocked.join("full")).expect("a folder in the way");
     let error = preset::save_material(&blocked, gold).expect_err("a folder cannot be replaced");
     assert!(matches!(error, FileError::Write { .. }), "{error}");
     assert_eq!(
-        fs::read_dir(folder.path()).expect("listed").count(),
+        fs::read_dir(folder.root()).expect("listed").count(),
         2,
         "no temporary file is left"
     );
-    assert!(preset::save_material(&folder.path().join("missing/m.json"), gold).is_err());
+    assert!(preset::save_material(&folder.path("missing/m.json"), gold).is_err());
     assert!(preset::save_material(Path::new("/"), gold).is_err());
+    // A file of a program that was killed, which had the same number.
+    fs::write(
+        folder.path(format!(".m.json.{}-0.glossmith-part", std::process::id())),
+        "",
+    )
+    .expect("written");
+    preset::save_material(&path, gold).expect("saved beside it");
 }
 
 #[cfg(unix)]
 #[test]
 fn saving_follows_links_and_keeps_permissions() {
     use std::os::unix::fs::{PermissionsExt, symlink};
-    let folder = tempfile::tempdir().expect("a folder");
-    let (path, link) = (folder.path().join("m.json"), folder.path().join("link.json"));
+    let folder = Workplace::new();
+    let (path, link) = (folder.path("m.json"), folder.path("link.json"));
     preset::save_material(&path, &PRESETS[0]).expect("saved");
     fs::set_permissions(&path, fs::Permissions::from_mode(0o640)).expect("set");
     symlink(&path, &link).expect("a link");
@@ -197,7 +204,7 @@ fn unusual_document(folder: &Path) -> Document {
     document.lighting.rotation_deg = 12.3;
     document.lighting.background = Background::Color([0.1, 0.2, 0.3]);
     document.lighting.area_lights = vec![AreaLight::default(), AreaLight::spot()];
-    document.camera.target = Some([0.1, -2.0, 1e-3]);
+    document.camera.target = Some([0.1, -2.0, 0.001]);
     document.camera.distance = Some(3.3);
     document.bookmarks = vec![Bookmark {
         name: "Side".to_owned(),
@@ -208,9 +215,9 @@ fn unusual_document(folder: &Path) -> Document {
 
 #[test]
 fn documents_survive_their_files() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join("p.json");
-    for document in [Document::default(), unusual_document(folder.path())] {
+    let folder = Workplace::new();
+    let path = folder.path("p.json");
+    for document in [Document::default(), unusual_document(folder.root())] {
         project::save_document(&path, &document).expect("saved");
         let loaded = project::load_document(&path).expect("read");
         assert_eq!(loaded.value, document);
@@ -231,7 +238,7 @@ fn documents_survive_their_files() {
         .value;
     assert_eq!(moved.model, ModelSource::File(PathBuf::from("/moved/models/teapot")));
     // A file called like a built-in model stays a file.
-    let model = ModelSource::File(folder.path().join("teapot"));
+    let model = folder.model("teapot");
     project::save_document(
         &path,
         &Document {
@@ -316,8 +323,8 @@ fn broken_documents_are_named_with_the_part_that_is_wrong() {
 
 #[test]
 fn either_kind_of_file_is_told_from_the_other() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join("x.json");
+    let folder = Workplace::new();
+    let path = folder.path("x.json");
     project::save_document(&path, &Document::default()).expect("saved");
     assert!(matches!(opened::open(&path), Ok(Opened::Document(_))));
     preset::save_material(&path, &PRESETS[0]).expect("saved");

@@ -1,9 +1,10 @@
 //! Limiting fireflies: off unless asked for, and honest about what it takes.
 
+use crate::renders::adjust;
 use std::time::Duration;
 
 use glossmith::{
-    document::{AreaLight, Document, PixelFilter},
+    document::{AreaLight, Document},
     job::film::Film,
     render::{EngineChoice, Session},
     scene::ModelSource,
@@ -21,8 +22,10 @@ fn scene(firefly_clamp: Option<f32>) -> Document {
         strength: 200.0,
         ..AreaLight::default()
     }];
-    (document.render.width, document.render.height, document.render.samples) = (48, 48, 16);
-    document.render.filter = PixelFilter::Box;
+    adjust(
+        &mut document,
+        "render.width=48 render.height=48 render.samples=16 render.filter=box",
+    );
     document.render.firefly_clamp = firefly_clamp;
     document
 }
@@ -57,12 +60,8 @@ fn what_is_taken_is_told() {
             "{engine:?}: {missing} of {}",
             energy(&free)
         );
-        assert!(
-            (limited.clamped() / missing - 1.0).abs() < 1e-3,
-            "{engine:?}: {} told, {missing} missing",
-            limited.clamped()
-        );
-        assert!((limited.clamped_share() - missing / energy(&free)).abs() < 1e-4);
+        near!(limited.clamped() / missing, 1.0, 0.001, "{engine:?}");
+        near!(limited.clamped_share(), missing / energy(&free), 0.0001);
         // A limit that nothing reaches takes nothing, to the bit on the processor.
         let (loose, _) = film(&mut session, &scene(Some(1e9)));
         assert_eq!(loose.clamped(), 0.0, "{engine:?}");
@@ -71,5 +70,5 @@ fn what_is_taken_is_told() {
         }
         taken.push(limited.clamped());
     }
-    assert!((taken[0] / taken[1] - 1.0).abs() < 0.01, "{taken:?}");
+    near!(taken[0] / taken[1], 1.0, 0.01);
 }

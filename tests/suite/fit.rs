@@ -9,7 +9,6 @@ use glossmith::{
         lobe::{Lobe, model::LobeModel, model::view_direction, phong},
         vector::vec3,
     },
-    store::load_material,
 };
 
 use crate::cli_support::Workplace;
@@ -49,11 +48,11 @@ fn table_of_equal_looks_is_reproduced() {
         let ggx = nearest(&target, Lobe::Ggx, 0.0, Measure::Density);
         let case = format!("{curve:?} {roughness}: {phong:?} {ggx:?}");
         let phong_exponent = phong::exponent(phong.roughness);
-        assert!((phong_exponent / exponent - 1.0).abs() < 0.01, "{case}");
+        near!(phong_exponent / exponent, 1.0, 0.01, "{case}");
         // The last digits that the table gives.
-        assert!((ggx.roughness.powi(2) - alpha).abs() < 0.001, "{case}");
-        assert!((phong.total_variation - phong_tv).abs() < 0.001, "{case}");
-        assert!((ggx.total_variation - ggx_tv).abs() < 0.0055, "{case}");
+        near!(ggx.roughness.powi(2), alpha, 0.001, "{case}");
+        near!(phong.total_variation, phong_tv, 0.001, "{case}");
+        near!(ggx.total_variation, ggx_tv, 0.0055, "{case}");
     }
 }
 
@@ -97,7 +96,7 @@ fn merl_file(base: [f64; 3], highlight: [f64; 3], lobe: &LobeModel) -> Vec<u8> {
         let around = across * phi_d.cos() + vec3(0.0, phi_d.sin(), 0.0);
         let wi = half * theta_d.cos() + around * theta_d.sin();
         let wo = wi.mirrored_about(half);
-        let is_above = wi.z > 1e-3 && wo.z > 1e-3;
+        let is_above = wi.z > 0.001 && wo.z > 0.001;
         // Below the horizon the database has negative numbers.
         lobe_values.push(if is_above {
             lobe.evaluate(wo, wi)[0] / wi.z
@@ -128,19 +127,15 @@ fn measured_ggx_is_found_again() {
     let merl = Merl::load(&file).unwrap();
     let (wo, wi) = (view_direction(0.5), vec3(0.3, 0.2, 0.9).normalize());
     let expected = 0.4 / std::f64::consts::PI + 0.04 * ggx.evaluate(wo, wi)[0] / wi.z;
-    assert!((merl.reflectance(wo, wi).x / expected - 1.0).abs() < 0.02);
+    near!(merl.reflectance(wo, wi).x / expected, 1.0, 0.02);
     place.done("fit --target red-plastic.binary --lobe ggx --output fit.json");
-    let material = load_material(&place.path("fit.json")).unwrap().value;
+    let material = place.material("fit.json");
     assert_eq!((material.lobe, material.metalness), (Lobe::Ggx, 0.0));
-    assert!((material.roughness / 0.3 - 1.0).abs() < 0.03, "{}", material.roughness);
-    assert!((material.ior - 1.5).abs() < 0.03, "{}", material.ior);
+    near!(material.roughness / 0.3, 1.0, 0.03);
+    near!(material.ior, 1.5, 0.03);
     for (found, expected) in material.base_color.into_iter().zip([0.4, 0.1, 0.05]) {
         // The base gets what the highlight leaves over.
-        assert!(
-            (found * 0.96 / expected - 1.0).abs() < 0.06,
-            "{:?}",
-            material.base_color
-        );
+        near!(found * 0.96 / expected, 1.0, 0.06, "{:?}", material.base_color);
     }
     // The geometric lobe, its curve free, and a metal.
     let gold = [0.9, 0.6, 0.2];
@@ -156,11 +151,7 @@ fn measured_ggx_is_found_again() {
     found.apply(&mut material);
     assert_eq!(material.metalness, 1.0);
     for (found, expected) in material.base_color.into_iter().zip(gold) {
-        assert!(
-            (f64::from(found) / expected - 1.0).abs() < 0.08,
-            "{:?}",
-            material.base_color
-        );
+        near!(f64::from(found) / expected, 1.0, 0.08, "{:?}", material.base_color);
     }
 }
 
@@ -180,7 +171,7 @@ fn command_line_fits_and_plots() {
     ] {
         assert!(printed.contains(word), "{word}: {printed}");
     }
-    let material = load_material(&place.path("fit.json")).unwrap().value;
+    let material = place.material("fit.json");
     assert_eq!((material.lobe, material.curve), (Lobe::Geometric, Curve::Custom));
     let rows = place.read("fit.csv");
     assert!(rows.starts_with("lobe,view_angle_deg,angle_deg,density\n"), "{rows}");

@@ -6,8 +6,11 @@ use glam::{DVec3, Vec2, Vec3};
 use glossmith::scene::{AlphaMode, Fate, Wrap, texture::TextureTarget};
 use serde_json::{Value, json};
 
-use super::gltf_builder::{Buffer, Folder, SQUARE, glb, png, square};
 use super::gltf_extensions::load_plain;
+use super::{
+    cli_support::Workplace,
+    gltf_builder::{Buffer, SQUARE, glb, png, square},
+};
 
 #[test]
 fn a_square_is_read_as_it_is() {
@@ -127,7 +130,7 @@ fn lists_strips_and_fans_without_normals_are_flat() {
             .map(|t| mesh.corners(t))
             .map(|[a, b, c]| (b - a).cross(c - a).z / 2.0)
             .sum();
-        assert!((area - 1.0).abs() < 1e-12, "mode {mode}: area {area}");
+        near!(area, 1.0, 1e-12, "mode {mode}");
     }
 }
 
@@ -217,11 +220,7 @@ fn materials_and_textures_become_slots() {
     );
     // In bounding radii: the square of side 1 has one of half its diagonal.
     let distance = 3.0 / std::f32::consts::FRAC_1_SQRT_2;
-    assert!(
-        (lamp.number("transmission.depth") - distance).abs() < 1e-5,
-        "{}",
-        lamp.number("transmission.depth")
-    );
+    near!(lamp.number("transmission.depth"), distance, 1e-5);
     assert_eq!(lamp.color("transmission.color"), [0.25, 0.5, 0.75]);
     assert_eq!(default.number("transmission.depth"), 0.0);
     assert_eq!(model.report.lines().len(), 1, "{:?}", model.report);
@@ -261,7 +260,7 @@ fn materials_and_textures_become_slots() {
 /// A byte order mark, NULs after the JSON, chunks of other kinds, bytes after the buffer.
 #[test]
 fn containers_are_read_as_programs_fill_them() {
-    let folder = Folder::new();
+    let folder = Workplace::new();
     let (buffer, document) = square();
     let whole = glb(&document, &buffer.bytes);
     let json = 20 + u32::from_le_bytes(whole[12..16].try_into().unwrap()) as usize;
@@ -300,9 +299,9 @@ fn containers_are_read_as_programs_fill_them() {
 /// Data URIs in both forms, with escapes; names whose case differs, of folders too.
 #[test]
 fn names_and_data_of_uris_are_read() {
-    let folder = Folder::new();
+    let folder = Workplace::new();
     fs::create_dir(folder.path("Textures")).unwrap();
-    fs::write(folder.path("Textures/A b.PNG"), png()).unwrap();
+    folder.write("Textures/A b.PNG", png());
     let escaped: String = png().iter().map(|byte| format!("%{byte:02x}")).collect();
     let base_64 =
         "iVBORw0KGgoAAAANSUhEUgAAAAkAAAAJCAIAAABv85FHAAAAFElEQVR4nGNsaGhgwAGYcEkMEzkAgOcBkj3eIxkAAAAASUVORK5CYII%3D";
@@ -324,10 +323,10 @@ fn names_and_data_of_uris_are_read() {
 
 #[test]
 fn buffers_and_pictures_may_be_beside_the_file_or_in_its_text() {
-    let folder = Folder::new();
+    let folder = Workplace::new();
     let (buffer, mut document) = square();
-    fs::write(folder.path("my data.bin"), &buffer.bytes).expect("write");
-    fs::write(folder.path("picture.png"), png()).expect("write");
+    folder.write("my data.bin", &buffer.bytes);
+    folder.write("picture.png", png());
     document["buffers"][0]["uri"] = json!("my%20data.bin");
     document["images"] = json!([{"uri": "picture.png"}]);
     document["textures"] = json!([{"source": 0}]);

@@ -1,13 +1,12 @@
 //! Small glTF files for tests.
 
-use std::{fs, path::PathBuf};
-
 use glossmith::{
     import::{ModelError, load},
     scene::{Model, ModelSource, mesh::Mesh},
 };
 use serde_json::{Value, json};
-use tempfile::TempDir;
+
+use crate::cli_support::Workplace;
 
 /// A GLB of JSON and a binary chunk.
 pub fn glb(json: &Value, binary: &[u8]) -> Vec<u8> {
@@ -107,25 +106,17 @@ pub fn square() -> (Buffer, Value) {
     (buffer, document)
 }
 
-pub struct Folder(pub TempDir);
-
-impl Folder {
-    pub fn new() -> Self {
-        Self(TempDir::new().expect("a temporary folder"))
-    }
-    pub fn path(&self, name: &str) -> PathBuf {
-        self.0.path().join(name)
-    }
+impl Workplace {
     pub fn load(&self, name: &str, bytes: &[u8]) -> Result<Model, ModelError> {
-        let path = self.path(name);
-        fs::write(&path, bytes).expect("write a test file");
-        load(&ModelSource::File(path))
+        self.write(name, bytes);
+        load(&self.model(name))
     }
-    /// The source of a file of this name.
+    pub fn model(&self, name: &str) -> ModelSource {
+        ModelSource::File(self.path(name))
+    }
     pub fn glb(&self, name: &str, document: &Value, buffer: &Buffer) -> ModelSource {
-        let path = self.path(name);
-        fs::write(&path, glb(document, &buffer.bytes)).expect("write a test file");
-        ModelSource::File(path)
+        self.write(name, glb(document, &buffer.bytes));
+        self.model(name)
     }
     pub fn load_glb(&self, document: &Value, buffer: &Buffer) -> Result<Model, ModelError> {
         load(&self.glb("model.glb", document, buffer))

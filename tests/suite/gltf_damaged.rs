@@ -1,8 +1,11 @@
 //! What is said about files that cannot be loaded; that no file makes the loader panic.
 
-use super::gltf_builder::{Folder, glb, pictured, put, square};
+use super::{
+    cli_support::Workplace,
+    gltf_builder::{glb, pictured, put, square},
+};
 use glossmith::import::{ModelError, load};
-use glossmith::scene::{Fate, Model, ModelSource};
+use glossmith::scene::{Fate, Model, ModelSource, texture::TextureTarget};
 use serde_json::{Value, json};
 
 /// Every refusal is one line that names the file and says what and what to do.
@@ -16,13 +19,10 @@ fn refused(result: Result<Model, ModelError>, words: &[&str]) {
 
 #[test]
 fn files_that_are_no_models_are_refused_with_a_reason() {
-    let folder = Folder::new();
+    let folder = Workplace::new();
+    refused(load(&folder.model("nowhere.glb")), &["nowhere.glb", "cannot read"]);
     refused(
-        load(&ModelSource::File(folder.path("nowhere.glb"))),
-        &["nowhere.glb", "cannot read"],
-    );
-    refused(
-        load(&ModelSource::File(folder.0.path().to_owned())),
+        load(&ModelSource::File(folder.root().to_owned())),
         &["no model in it", "glb"],
     );
     refused(
@@ -66,7 +66,7 @@ fn files_that_are_no_models_are_refused_with_a_reason() {
 
 #[test]
 fn damaged_documents_are_refused_with_a_reason() {
-    let folder = Folder::new();
+    let folder = Workplace::new();
     for (place, value, words) in [
         (
             "/meshes/0/primitives/0/attributes/POSITION",
@@ -108,7 +108,7 @@ fn damaged_documents_are_refused_with_a_reason() {
 /// What a detail costs is told with its name, and the rest is shown.
 #[test]
 fn nothing_stops_for_a_detail() {
-    let folder = Folder::new();
+    let folder = Workplace::new();
     let mut broken = pictured(json!({"emissiveTexture": {"index": 0}}), b"no picture");
     put(&mut broken.1, "/images/0/name", json!("broken"));
     let whole = json!({"attributes": {"POSITION": 0, "NORMAL": 1, "TEXCOORD_0": 2}, "indices": 3});
@@ -175,6 +175,7 @@ fn nothing_stops_for_a_detail() {
         put(&mut document, place, value);
         let model = folder.load_glb(&document, &buffer).expect("loads");
         assert_eq!(model.mesh.triangles.len(), 2, "{words:?}");
+        assert_eq!(model.slots[0].texture(TextureTarget::Emission), None, "{words:?}");
         let mut lines = model.report.of(fate).map(|entry| entry.line());
         let found = lines.any(|line| words.iter().all(|word| line.contains(word)));
         assert!(found, "{words:?}: {:?}", model.report);
@@ -185,9 +186,9 @@ fn nothing_stops_for_a_detail() {
 /// What no exporter writes is refused with its reason: nothing is guessed in its place.
 #[test]
 fn what_no_exporter_writes_is_refused() {
-    let folder = Folder::new();
+    let folder = Workplace::new();
     let (buffer, mut document) = square();
-    std::fs::write(folder.path("square.bin"), &buffer.bytes).unwrap();
+    folder.write("square.bin", &buffer.bytes);
     document["buffers"][0]["uri"] = json!("square.bin");
     document["materials"] = json!([{"pbrMetallicRoughness": {"roughnessFactor": 0.75}}]);
     document["cameras"] = json!([{"type": "perspective", "perspective": {"yfov": 0.5, "znear": 0.1}}]);

@@ -5,10 +5,13 @@ use glossmith::import::load_with;
 use glossmith::scene::{Fate, Model, ModelOptions, ModelSource};
 use serde_json::{Value, json};
 
-use super::gltf_builder::{Buffer, Folder, glb, square};
+use super::{
+    cli_support::Workplace,
+    gltf_builder::{Buffer, glb, square},
+};
 
 pub fn load(document: &Value, buffer: &Buffer, options: &ModelOptions) -> Model {
-    let folder = Folder::new();
+    let folder = Workplace::new();
     let path = folder.path("model.glb");
     std::fs::write(&path, glb(document, &buffer.bytes)).unwrap();
     load_with(&ModelSource::File(path), options).expect("loads")
@@ -87,7 +90,7 @@ fn draco_meshes_are_those_that_were_compressed() {
 
     // A stream cut short is left out, and blamed.
     document["bufferViews"][view]["byteLength"] = json!(DRACO_SHEET.len() / 2);
-    let error = Folder::new()
+    let error = Workplace::new()
         .load_glb(&document, &buffer)
         .expect_err("no triangles left")
         .to_string();
@@ -171,7 +174,7 @@ fn meshopt_meshes_are_those_that_were_compressed() {
         assert!(model.report.is_clean(), "{:?}", model.report);
         // No memory is asked for that so few bytes cannot fill.
         document["bufferViews"][0]["extensions"][extension]["count"] = json!(1u64 << 40);
-        let refused = Folder::new().load_glb(&document, &buffer).expect_err("it can't be");
+        let refused = Workplace::new().load_glb(&document, &buffer).expect_err("it can't be");
         assert!(refused.to_string().contains("cannot hold"), "{refused}");
     }
 }
@@ -191,6 +194,8 @@ fn puppet() -> (Buffer, Value) {
     let turns = buffer.floats(&[[0.0, 0.0, 0.0, 1.0], [0.0, half, 0.0, half]]);
     let moves = buffer.floats(&[[0.0, 0.0, 0.0], [0.0, 10.0, 0.0]]);
     let mixes = buffer.floats(&[[0.0], [1.0]]);
+    // Each key between its tangents, per second.
+    let curve = buffer.floats(&[0.0, 0.0, 2.0, 4.0, 8.0, 0.0].map(|y| [0.0, y, 0.0]));
     let mut document = buffer.document(json!([{
         "attributes": {"POSITION": 0, "NORMAL": 1, "JOINTS_0": joints, "WEIGHTS_0": weights}, "indices": 3,
         "targets": [{"POSITION": lift}],
@@ -204,12 +209,13 @@ fn puppet() -> (Buffer, Value) {
     document["animations"] = json!([{
         "samplers": [
             {"input": times, "output": turns}, {"input": times, "output": moves, "interpolation": "STEP"},
-            {"input": times, "output": mixes},
+            {"input": times, "output": mixes}, {"input": times, "output": curve, "interpolation": "CUBICSPLINE"},
         ],
         "channels": [
             {"sampler": 0, "target": {"node": 2, "path": "rotation"}},
             {"sampler": 1, "target": {"node": 2, "path": "translation"}},
             {"sampler": 2, "target": {"node": 0, "path": "weights"}},
+            {"sampler": 3, "target": {"node": 1, "path": "translation"}},
         ],
     }]);
     (buffer, document)
@@ -240,10 +246,10 @@ fn skins_and_morph_targets_follow_the_pose() {
     near(at(Some(0.0)).mesh.positions[2], [1.0, 1.0, 0.0]);
     let middle = at(Some(2.0)).mesh;
     let diagonal = std::f64::consts::FRAC_1_SQRT_2;
-    near(middle.positions[1], [1.0, 0.0, 1.0]);
-    near(middle.positions[2], [2.0 * diagonal, 1.0, 0.0]);
+    near(middle.positions[1], [1.0, 3.5, 1.0]);
+    near(middle.positions[2], [2.0 * diagonal, 4.5, 0.0]);
     near(middle.normals[2].as_dvec3(), [diagonal, 0.0, diagonal]);
-    near(at(Some(9.0)).mesh.positions[2], [2.0, 11.0, -1.0]);
+    near(at(Some(9.0)).mesh.positions[2], [2.0, 19.0, -1.0]);
     assert!(rest.report.is_clean(), "{:?}", rest.report);
 }
 

@@ -11,8 +11,11 @@ use glossmith::{
 };
 use serde_json::{Value, json};
 
-use super::gltf_builder::{Folder, pictured, png};
 use super::gltf_extensions::{load_plain, says};
+use super::{
+    cli_support::Workplace,
+    gltf_builder::{pictured, png},
+};
 
 /// What is read of a material on a square, with a picture of two texels as texture 0.
 fn slot_of(material: &Value) -> Model {
@@ -67,9 +70,11 @@ fn has_widths(material: &MaterialSettings, roughness: f64, strength: f64) {
     let stretch = stretch_from_anisotropy(f64::from(material.anisotropy));
     let mean = f64::from(material.roughness).powi(2);
     for (found, wanted) in [(mean * stretch, along), (mean / stretch, across)] {
-        assert!(
-            (found / wanted - 1.0).abs() < 1e-4,
-            "roughness {roughness}, strength {strength}: {found} in place of {wanted}"
+        near!(
+            found / wanted,
+            1.0,
+            0.0001,
+            "roughness {roughness}, strength {strength}"
         );
     }
 }
@@ -94,7 +99,7 @@ fn a_stretched_highlight_has_the_widths_of_the_extension() {
         let (material, model) = read(roughness, strength);
         let along = roughness * roughness + (1.0 - roughness * roughness) * strength * strength;
         let found = f64::from(material.roughness).powi(2) * stretch_from_anisotropy(f64::from(material.anisotropy));
-        assert!((found / along - 1.0).abs() < 1e-4, "{found} in place of {along}");
+        near!(found / along, 1.0, 0.0001);
         assert_eq!(material.anisotropy, 1.0);
         says(&model, Fate::Approximated, "stretched more than 19 : 1");
     }
@@ -114,9 +119,9 @@ fn an_index_beyond_4_is_a_metal_of_the_specular_colour() {
         let slot = &model.slots[0];
         let expected = [0.5, 0.25, 0.5].map(|factor| factor * reflectance);
         let found = slot.color("base.color");
-        let is_near = found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-4);
+        let is_near = found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 0.0001);
         assert!(
-            is_near && (slot.number("base.metalness") - 1.0).abs() < 1e-4,
+            is_near && (slot.number("base.metalness") - 1.0).abs() < 0.0001,
             "{slot:?}"
         );
         says(&model, Fate::Approximated, "above 4, as metalness");
@@ -151,16 +156,12 @@ fn specular_glossiness_becomes_metalness_and_roughness() {
         (0.0, 0.25, 0.5)
     );
     for (found, expected) in plastic.color("base.color").iter().zip([0.2, 0.4, 0.6]) {
-        assert!((found - expected).abs() < 1e-6, "{:?}", plastic.color("base.color"));
+        near!(found, expected, 1e-6, "{:?}", plastic.color("base.color"));
     }
     let gold = of([0.0; 3], [1.0, 0.75, 0.25]);
-    assert!(
-        (gold.number("base.metalness") - 1.0).abs() < 1e-6,
-        "{}",
-        gold.number("base.metalness")
-    );
+    near!(gold.number("base.metalness"), 1.0, 1e-6);
     for (found, expected) in gold.color("base.color").iter().zip([1.0, 0.75, 0.25]) {
-        assert!((found - expected).abs() < 1e-5, "{:?}", gold.color("base.color"));
+        near!(found, expected, 1e-5, "{:?}", gold.color("base.color"));
     }
     // With textures, texel by texel: (10, 20, 30) is dark and reflects little.
     let texture = json!({"index": 0});
@@ -183,8 +184,8 @@ fn sheens_are_fuzz() {
     says(&model, Fate::Approximated, "a sheen, as fuzz of about its albedo");
     let material = materials_of(&model, ImportLobe::Geometric).remove(0);
     assert_eq!((material.fuzz_weight, material.fuzz_color), (0.5, [1.0, 0.5, 0.0]));
-    assert!((material.fuzz_roughness - 0.55).abs() < 1e-6);
-    let folder = Folder::new();
+    near!(material.fuzz_roughness, 0.55, 1e-6);
+    let folder = Workplace::new();
     let path = folder.path("older.json");
     let kept = json!({"sheen.color": [0.5, 0.25, 0.0], "sheen.roughness": 0.5});
     std::fs::write(&path, json!({"glossmith": 1, "material": kept}).to_string()).unwrap();
@@ -211,7 +212,7 @@ fn textures_of_sheens_and_fuzz_are_looked_up() {
         [f64::from(at.fuzz_weight), r, g, b, f64::from(at.fuzz_roughness)]
     };
     let near = |found: [f64; 5], expected: [f64; 5]| {
-        let is_near = found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 3e-3);
+        let is_near = found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 0.003);
         assert!(is_near, "{found:?} for {expected:?}");
     };
     let linear = [10.0, 20.0, 30.0].map(|code: f64| linear_from_srgb(Vec3::splat(code / 255.0)).x);
@@ -256,16 +257,16 @@ fn iridescence_is_a_thin_film() {
     );
     let material = materials_of(&model, ImportLobe::Geometric).remove(0);
     let film = |m: &MaterialSettings| [m.film_weight, m.film_ior, m.film_thickness];
-    assert_eq!(film(&material), [0.5, 1.75, 1e-3 * 350.0]);
+    assert_eq!(film(&material), [0.5, 1.75, 0.001 * 350.0]);
     // Both texels of the picture are (10, 20, 30); the least thickness is 100 nm.
     let (compiled, _) = compile_textured(&[material], &Textures::new(&model).slots);
     let share = 20.0 / 255.0;
     let expected = [0.5 * 10.0 / 255.0, film_path(0.1 + 0.25 * share).x];
     for (found, expected) in [compiled[0].film_weight, compiled[0].film_path.x].iter().zip(expected) {
-        assert!((found - expected).abs() < 1e-5, "{found} for {expected}");
+        near!(found, expected, 1e-5);
     }
     // Files of versions that only kept it.
-    let folder = Folder::new();
+    let folder = Workplace::new();
     let path = folder.path("old.json");
     let old = json!({"glossmith": 1, "name": "Old", "material": {
         "iridescence.weight": 0.5, "iridescence.ior": 1.75, "iridescence.thickness_nm": 350,

@@ -9,9 +9,10 @@ use glossmith::{
 use serde_json::{Value, json};
 
 use super::{
-    gltf_builder::{Buffer, Folder, glb, pictured, png, put, square},
+    cli_support::Workplace,
+    gltf_builder::{Buffer, glb, pictured, png, put, square},
     gltf_extensions::load_plain,
-    renders::render,
+    renders::{adjust, render},
 };
 
 const SIZE: u32 = 17;
@@ -30,7 +31,7 @@ fn painted(material: Value, colors: Option<[[f32; 4]; 4]>) -> (Buffer, Value) {
 }
 
 /// A document of a square that shines with the colours of its vertices.
-pub fn shining_by_vertices(folder: &Folder) -> Document {
+pub fn shining_by_vertices(folder: &Workplace) -> Document {
     let material = json!({"extensions": {"KHR_materials_unlit": {}}});
     let colors = [
         [0.9, 0.1, 0.1, 1.0],
@@ -57,10 +58,10 @@ fn strip(texels: &[[u8; 3]]) -> Vec<u8> {
 
 /// The pixels of a file, seen from the front in even light of this strength, as an engine draws them.
 fn pixels(file: &(Buffer, Value), picture: Option<&[u8]>, choice: EngineChoice, light: f32) -> Vec<[f32; 4]> {
-    let folder = Folder::new();
+    let folder = Workplace::new();
     let path = folder.path("square.glb");
     if let Some(picture) = picture {
-        std::fs::write(folder.path("picture.png"), picture).unwrap();
+        folder.write("picture.png", picture);
     }
     std::fs::write(&path, glb(&file.1, &file.0.bytes)).unwrap();
     let source = ModelSource::File(path);
@@ -76,7 +77,10 @@ fn pixels(file: &(Buffer, Value), picture: Option<&[u8]>, choice: EngineChoice, 
     document.lighting.strength = light;
     document.lighting.background = Background::Transparent;
     (document.camera.yaw_deg, document.camera.pitch_deg) = (0.0, 0.0);
-    (document.render.width, document.render.height, document.render.samples) = (SIZE, SIZE, 64);
+    adjust(
+        &mut document,
+        &format!("render.width={SIZE} render.height={SIZE} render.samples=64"),
+    );
     render(choice, &document).image().pixels
 }
 
@@ -164,7 +168,7 @@ fn unlit_materials_show_the_colours_of_their_vertices() {
         let file = painted(material.clone(), Some([[color, 0.25, 1.0, 1.0]; 4]));
         for choice in ENGINES {
             let found = middle(&pixels(&file, None, choice, 0.0));
-            assert_near(found, [color, 0.25, 1.0], 1e-4, &format!("{choice:?}"));
+            assert_near(found, [color, 0.25, 1.0], 0.0001, &format!("{choice:?}"));
         }
     }
 }
@@ -184,8 +188,8 @@ fn the_alpha_of_vertices_is_their_opacity() {
             let file = painted(material.clone(), Some([[1.0, 1.0, 1.0, alpha]; 4]));
             let [.., found] = middle(&pixels(&file, None, choice, 1.0));
             // Whether a sample meets the square is drawn: its deviation is √(α (1 − α)/64).
-            let tolerance = 4.0 * (expected * (1.0 - expected) / 64.0_f32).sqrt() + 1e-4;
-            assert!((found - expected).abs() <= tolerance, "{choice:?}, {material}: {found}");
+            let tolerance = 4.0 * (expected * (1.0 - expected) / 64.0_f32).sqrt() + 0.0001;
+            near!(found, expected, tolerance, "{choice:?}, {material}");
         }
     }
 }

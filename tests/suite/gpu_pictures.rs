@@ -2,8 +2,9 @@
 //! textures of 16 bits.
 
 use super::{
+    cli_support::Workplace,
     environment_shapes::{FACES, assert_is_that_cube},
-    gltf_builder::{Folder, pictured},
+    gltf_builder::pictured,
     gltf_extensions::load_plain,
 };
 use glossmith::{
@@ -20,7 +21,7 @@ use image::{DynamicImage, ImageBuffer, Rgb};
 use serde_json::json;
 
 /// A KTX2 file of levels as they are.
-pub(super) fn ktx2(format: u32, [width, height, faces]: [u32; 3], levels: &[Vec<u8>]) -> Vec<u8> {
+pub fn ktx2(format: u32, [width, height, faces]: [u32; 3], levels: &[Vec<u8>]) -> Vec<u8> {
     let mut bytes = b"\xabKTX 20\xbb\r\n\x1a\n".to_vec();
     let numbers = [format, 1, width, height, 0, 0, faces, levels.len() as u32, 0];
     bytes.extend(numbers.iter().flat_map(|number| number.to_le_bytes()));
@@ -75,7 +76,7 @@ fn small_floats(color: [f32; 3]) -> Vec<u8> {
 
 #[test]
 fn ktx2_cubes_of_every_kind_of_light_are_read() {
-    let folder = Folder::new();
+    let folder = Workplace::new();
     let path = folder.path("cube.ktx2");
     let floats = |[r, g, b]: [f32; 3]| [r, g, b, 1.0_f32].iter().flat_map(|x| x.to_le_bytes()).collect();
     let codes = |color: [f32; 3]| color.iter().map(|x| (255.0 * x) as u8).chain([255]).collect();
@@ -115,7 +116,7 @@ fn ktx2_cubes_of_every_kind_of_light_are_read() {
 
 #[test]
 fn dds_cubes_and_panoramas_are_read() {
-    let folder = Folder::new();
+    let folder = Workplace::new();
     let path = folder.path("cube.dds");
     let load_of = |bytes: Vec<u8>| {
         std::fs::write(&path, bytes).unwrap();
@@ -179,6 +180,8 @@ fn normals_and_roughness_keep_sixteen_bits_and_colours_have_eight() {
     for slot in ["normalTexture", "metallicRoughnessTexture"] {
         let model = textured(&png, slot);
         assert_eq!(model.textures[0].rgba16[..3], [32768 + 77, 32768 - 40, 65535], "{slot}");
+        // Where there is room for a texel it is one of as many bits.
+        assert_eq!(Textures::within(&model, 256 + 3).warnings.len(), 1, "{slot}");
         let textures = Textures::new(&model);
         let of_slot = &textures.slots[0];
         let record = of_slot.record(match slot {
@@ -190,7 +193,7 @@ fn normals_and_roughness_keep_sixteen_bits_and_colours_have_eight() {
         let (found, alpha) = texture_lookup(&textures, record, [[0.25_f64, 0.5]; 3]);
         let expected = [32768.0 + 77.0, 32768.0 - 40.0, 65535.0].map(|code| code / 65535.0);
         for (found, expected) in found.to_f64().into_iter().zip(expected) {
-            assert!((found - expected).abs() < 1e-6, "{slot}: {found} for {expected}");
+            near!(found, expected, 1e-6, "{slot}");
         }
         assert_eq!(alpha, 1.0);
     }
@@ -233,13 +236,10 @@ fn means_of_texels_are_rounded_once() {
         for other in (0..=255_u8).step_by(5) {
             let mean = |is_color| scaled_to(texels(2, 1, &[[code; 4], [other; 4]]), 1, is_color).0.rgba8[0];
             let half = (f64::from(code) + f64::from(other)) / 2.0;
-            assert!((half - f64::from(mean(false))).abs() <= 0.5);
+            near!(half, f64::from(mean(false)), 0.5);
             let light = [code, other].map(|code| linear_from_srgb(Vec3::splat(f64::from(code) / 255.0)).x);
             let exact = 255.0 * srgb_from_linear(Vec3::splat((light[0] + light[1]) / 2.0)).x;
-            assert!(
-                (exact - f64::from(mean(true))).abs() < 0.5 + 1e-4,
-                "{code} and {other}: {exact}"
-            );
+            near!(exact, f64::from(mean(true)), 0.5 + 0.0001, "{code} and {other}");
         }
     }
     // Sides that are odd: every row and column counts once.

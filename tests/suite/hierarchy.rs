@@ -111,7 +111,7 @@ fn needles() -> Mesh {
     for i in 0..200 {
         let angle = f64::from(i) * 0.031;
         let end = DVec3::new(angle.cos(), angle.sin(), 0.3 * (7.0 * angle).sin());
-        add([DVec3::ZERO, end, end + DVec3::new(0.0, 0.0, 1e-4)]);
+        add([DVec3::ZERO, end, end + DVec3::new(0.0, 0.0, 0.0001)]);
     }
     for _ in 0..9 {
         add([
@@ -139,7 +139,7 @@ fn exact(geometry: &Geometry, ray: &Ray) -> Option<Option<f64>> {
         let distance = |p: DVec3, q: DVec3| share(p, q) / (q - p).length();
         let inside = distance(a, b).min(distance(b, c)).min(distance(c, a));
         let blur = 1e-5 * (1.0 + origin.length());
-        let is_edge_on = sine.abs() < 1e-3;
+        let is_edge_on = sine.abs() < 0.001;
         if is_edge_on {
             // Near its plane anything may be said of it: is it anywhere near the ray at all?
             let nearest_along = |p: DVec3| (p - origin).cross(direction).length() / direction.length();
@@ -153,7 +153,7 @@ fn exact(geometry: &Geometry, ray: &Ray) -> Option<Option<f64>> {
             return None;
         }
         if inside > 0.0 {
-            let margin = 1e-4 * t.abs().max(0.1);
+            let margin = 0.0001 * t.abs().max(0.1);
             if t.abs() < margin || (t - f64::from(ray.t_max)).abs() < margin {
                 return None;
             }
@@ -180,7 +180,7 @@ fn every_instruction_set_meets_what_exact_arithmetic_meets() {
                 let is_occluded = geometry.occluded_by(*level, ray.origin, ray.direction, ray.t_max);
                 let t = hit.map(|hit| f64::from(hit.t));
                 let agrees = match (t, expected) {
-                    (Some(t), Some(expected)) => (t - expected).abs() < 1e-4 * expected.max(1.0),
+                    (Some(t), Some(expected)) => (t - expected).abs() < 0.0001 * expected.max(1.0),
                     (t, expected) => t.is_none() && expected.is_none(),
                 };
                 assert!(
@@ -242,7 +242,7 @@ fn all_instruction_sets_give_the_same_bits() {
 /// Sixteen rays or fewer that go the same way, near each other or not; now and then one that goes another way.
 fn random_packet(random: &mut Random, geometry: &Geometry) -> (Packet, usize) {
     let first = random_ray(random, geometry);
-    let spread = [1e-4, 0.05, 1.0][random.below(3)];
+    let spread = [0.0001, 0.05, 1.0][random.below(3)];
     let has_stray = random.below(20) == 0;
     let count = 1 + random.below(PACKET);
     let mut packet = Packet::default();

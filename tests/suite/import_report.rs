@@ -10,9 +10,8 @@ use serde_json::{Value, json};
 
 use super::{
     cli_support::Workplace,
-    gltf_builder::{Buffer, Folder, glb, square},
-    ui::{editor, request, see_label, wait},
-    ui_hands::Hands as _,
+    gltf_builder::{Buffer, glb, square},
+    ui::editor,
 };
 
 /// A square in two variants, one with a texture that is not there.
@@ -36,13 +35,13 @@ fn variants() -> (Buffer, Value) {
 fn the_command_line_tells_one_line_and_writes_the_rest() {
     let place = Workplace::new();
     let (buffer, document) = variants();
-    place.write("tree.glb", &glb(&document, &buffer.bytes));
+    place.write("tree.glb", glb(&document, &buffer.bytes));
     let render = "render --engine cpu --size 8x8 --samples 1 --output a.exr --model tree.glb --import-report told.json";
     let run = place.done(render);
     let told: Vec<&str> = run.stderr.lines().filter(|line| line.contains("tree.glb")).collect();
     assert_eq!(told.len(), 1, "{}", run.stderr);
     assert!(told[0].contains("1 missing") && told[0].contains("bark"), "{told:?}");
-    let report: Value = serde_json::from_str(&place.read("told.json")).unwrap();
+    let report: Value = place.json("told.json");
     let entries = report["entries"].as_array().unwrap();
     let missing: Vec<&Value> = entries.iter().filter(|entry| entry["fate"] == "missing").collect();
     assert_eq!(
@@ -69,17 +68,17 @@ fn the_command_line_tells_one_line_and_writes_the_rest() {
 
 #[test]
 fn the_sheet_tells_what_became_of_the_file_and_changes_the_variant() {
-    let folder = Folder::new();
+    let folder = Workplace::new();
     let path = folder.path("tree.glb");
     let (buffer, document) = variants();
     std::fs::write(&path, glb(&document, &buffer.bytes)).unwrap();
     let mut harness = editor();
-    request(&mut harness, Action::Open(path.clone()));
-    wait(&mut harness, "the model", |app| {
+    harness.request(Action::Open(path.clone()));
+    harness.wait("the model", |app| {
         app.document().model == ModelSource::File(path.clone())
     });
     harness.command(Command::ModelFile);
-    see_label(&mut harness, "missing");
+    harness.see_label("missing");
     let named = harness.query_all_by_label_contains("bark").count();
     assert!(named > 0, "the texture is named");
     harness.tap(Role::ComboBox, "Variant");
@@ -91,5 +90,5 @@ fn the_sheet_tells_what_became_of_the_file_and_changes_the_variant() {
         harness.step();
         std::thread::sleep(Duration::from_millis(5));
     }
-    assert_eq!(harness.document().materials[0].name, "Night");
+    assert_eq!(harness.material().name, "Night");
 }

@@ -9,8 +9,8 @@ use glossmith::{
 };
 use serde_json::{Value, json};
 
-use super::gltf_builder::{Buffer, Folder};
-use super::renders::{assert_same_picture, document, render};
+use super::renders::{adjust, assert_same_picture, document, render};
+use super::{cli_support::Workplace, gltf_builder::Buffer};
 
 /// Nodes: enough for their triangles to be kept as instances.
 const NODES: usize = 20;
@@ -29,7 +29,7 @@ fn place(node: usize) -> DMat4 {
 }
 
 /// The file of teapots of a material: all of one mesh, or of a mesh for each node.
-fn teapots(folder: &Folder, material: &Value, is_shared: bool) -> ModelSource {
+fn teapots(folder: &Workplace, material: &Value, is_shared: bool) -> ModelSource {
     let mut buffer = Buffer::default();
     let mut primitive = buffer.mesh(&teapot::mesh(16));
     primitive["material"] = json!(0);
@@ -49,7 +49,7 @@ fn teapots(folder: &Folder, material: &Value, is_shared: bool) -> ModelSource {
 }
 
 /// The same teapots as instances and one by one.
-fn both(folder: &Folder, material: &Value) -> [(ModelSource, Model); 2] {
+fn both(folder: &Workplace, material: &Value) -> [(ModelSource, Model); 2] {
     [true, false].map(|is_shared| {
         let source = teapots(folder, material, is_shared);
         let model = load(&source).expect("loads");
@@ -59,7 +59,7 @@ fn both(folder: &Folder, material: &Value) -> [(ModelSource, Model); 2] {
 
 #[test]
 fn a_mesh_of_many_nodes_is_in_memory_once() {
-    let folder = Folder::new();
+    let folder = Workplace::new();
     let [(_, shared), (_, apart)] = both(&folder, &json!({"doubleSided": true}));
     assert_eq!((shared.repeated.len(), shared.instances.len()), (1, NODES));
     assert!(shared.mesh.triangles.is_empty() && apart.repeated.is_empty());
@@ -97,7 +97,7 @@ fn a_mesh_of_many_nodes_is_in_memory_once() {
 
 #[test]
 fn an_instance_is_picked_and_hidden_as_its_node() {
-    let folder = Folder::new();
+    let folder = Workplace::new();
     let [(_, model), _] = both(&folder, &json!({}));
     let names: Vec<&str> = model.objects.iter().map(|object| object.name.as_str()).collect();
     assert_eq!(names.len(), NODES);
@@ -126,6 +126,8 @@ fn an_instance_is_picked_and_hidden_as_its_node() {
         center.distance(middle) < 2.0 && radius * geometry.world_units_per_unit < 7.0,
         "{center}"
     );
+    let place_of = geometry.places();
+    assert!((0..geometry.triangle_count() as u32).all(|triangle| geometry.triangle_at(place_of(triangle)) == triangle));
     // A ray at the object meets it or what is before it, never the hidden one.
     let origin = geometry
         .units_from_world(middle + DVec3::new(0.0, 0.0, 60.0))
@@ -142,10 +144,10 @@ fn an_instance_is_picked_and_hidden_as_its_node() {
 /// A GPU has the triangles of instances one by one: what does not fit is refused before it is made.
 #[test]
 fn instances_that_do_not_fit_a_gpu_are_refused_with_the_remedy() {
-    let folder = Folder::new();
+    let folder = Workplace::new();
     let source = teapots(&folder, &json!({}), true);
     let mut document = document(source, EnvironmentSource::Studio, &[]);
-    (document.render.width, document.render.height, document.render.samples) = (16, 16, 1);
+    adjust(&mut document, "render.width=16 render.height=16 render.samples=1");
     let submitted = |engine: EngineChoice, mib: u64| {
         let mut session = Session::open(engine).expect("opens");
         session.memory_limit = Some(mib << 20);
@@ -164,7 +166,7 @@ fn instances_that_do_not_fit_a_gpu_are_refused_with_the_remedy() {
 /// Brushed metal shows normals and tangents; shining plaster shows that all triangles are sampled.
 #[test]
 fn instances_look_as_meshes_of_their_own_do_on_both_engines() {
-    let folder = Folder::new();
+    let folder = Workplace::new();
     let brushed = json!({
         "pbrMetallicRoughness": {"metallicFactor": 1, "roughnessFactor": 0.4},
         "extensions": {"KHR_materials_anisotropy": {"anisotropyStrength": 0.8, "anisotropyRotation": 0.6}},
@@ -176,8 +178,10 @@ fn instances_look_as_meshes_of_their_own_do_on_both_engines() {
                 materials: materials_of(model, ImportLobe::Ggx),
                 ..document(source.clone(), EnvironmentSource::Studio, &[])
             };
-            (document.render.width, document.render.height, document.render.samples) = (48, 32, 32);
-            document.render.bounces = 4;
+            adjust(
+                &mut document,
+                "render.width=48 render.height=32 render.samples=32 render.bounces=4",
+            );
             let film = render(engine, &document);
             assert_eq!(film.dropped(), 0, "{name}");
             film

@@ -4,7 +4,7 @@ use std::{path::Path, process::Command, process::Stdio, time::Duration, time::In
 
 use glossmith::{document::Bookmark, document::Document, store::load_document, store::save_document};
 
-use super::support::Random;
+use super::{cli_support::Workplace, support::Random};
 
 /// Where the child saves to.
 const FILE: &str = "GLOSSMITH_TEST_SAVES_TO";
@@ -34,8 +34,8 @@ fn saves_until_it_is_killed() {
 
 #[test]
 fn a_kill_while_saving_leaves_the_old_file_or_the_new_one() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let path = folder.path().join("project.json");
+    let folder = Workplace::new();
+    let path = folder.path("project.json");
     let documents = documents();
     let mut random = Random::new(7);
     let mut found = [0, 0];

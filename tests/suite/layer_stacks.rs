@@ -64,11 +64,11 @@ fn a_tint_leaves_what_goes_through() {
     let [_, plain] = through(GLASS, "1,1,1");
     let [reflected, transmitted] = through(GLASS, "0,0,0");
     assert!(
-        reflected < 1e-6 && (transmitted - plain).abs() < 4e-3,
+        reflected < 1e-6 && (transmitted - plain).abs() < 0.004,
         "{transmitted} for {plain}"
     );
     let [under_black, _] = through(white, "0,0,0");
-    assert!((under_black - plain).abs() < 4e-3, "{under_black} for {plain}");
+    near!(under_black, plain, 0.004);
 }
 
 /// Beyond the critical angle of a smooth reflection a rougher refraction still lets light through, and is drawn.
@@ -79,7 +79,7 @@ fn extra_roughness_of_refraction_is_drawn_beyond_the_critical_angle() {
     ));
     for (cosine, through) in [(-0.7, 0.1746), (-0.6, 0.0615), (-0.4, 0.0211)] {
         let found = albedo(&frosted, cosine, 1 << 16).transmitted[1];
-        assert!((found - through).abs() < 2e-3, "at {cosine}: {found} for {through}");
+        near!(found, through, 0.002, "at {cosine}");
     }
 }
 
@@ -101,7 +101,7 @@ fn metals_under_a_coat_meet_its_index() {
                 let inner = reflectance(within, COAT, index);
                 let exact = outer + (1.0 - outer).powi(2) * inner / (1.0 - outer * inner);
                 let found = found[channel];
-                assert!((found - exact).abs() < 0.01, "{metal} at {cosine}: {found} for {exact}");
+                near!(found, exact, 0.01, "{metal} at {cosine}");
             }
         }
     }
@@ -116,7 +116,7 @@ fn films_under_a_coat_meet_its_angle() {
     ));
     for (cosine, exact) in [(0.5, 0.103), (0.342, 0.187)] {
         let [red, ..] = albedo(&filmed, cosine, 1 << 12).reflected;
-        assert!((red - exact).abs() < 0.015, "at {cosine}: {red} for {exact}");
+        near!(red, exact, 0.015, "at {cosine}");
     }
 }
 
@@ -128,21 +128,15 @@ fn the_weight_in_the_index_holds_for_glass() {
             "{GLASS} specular.roughness=0 specular.weight_in_index=on specular.weight={weight}"
         ));
         let found = albedo(&glass, cosine, 1 << 14);
-        assert!((found.reflected[1] - reflected).abs() < 2e-3, "{weight}: {found:?}");
-        assert!(
-            (found.transmitted[1] - (1.0 - reflected)).abs() < 2e-3,
-            "{weight}: {found:?}"
-        );
+        near!(found.reflected[1], reflected, 0.002, "{weight}");
+        near!(found.transmitted[1], (1.0 - reflected), 0.002, "{weight}");
     }
     let film = material(&format!(
         "{BLACK} specular.roughness=0.1 specular.weight_in_index=on specular.weight=0 thin_film.weight=1 \
          thin_film.thickness=0.5 thin_film.ior=1.8"
     ));
     let found = albedo(&film, 1.0, 1 << 12).reflected[1];
-    assert!(
-        (found - 0.225).abs() < 4e-3,
-        "a film without an index below it: {found}"
-    );
+    near!(found, 0.225, 0.004, "a film without an index below it");
 }
 
 /// Fringes of thick films are finer than the nodes of a table: bands blur them, so that white stacks stay white.
@@ -214,10 +208,7 @@ fn weights_come_in_without_a_jump() {
             });
             for (without, with) in without.as_flattened().iter().zip(with.as_flattened()) {
                 // Both draw the same numbers; what is drawn by another table may differ by its noise.
-                assert!(
-                    (without - with).abs() < 0.012,
-                    "stack {number}, {weight}: {without}, then {with}"
-                );
+                near!(without, with, 0.012, "stack {number}, {weight}");
             }
         }
     }
@@ -234,7 +225,7 @@ fn cut_light_is_told_without_refraction() {
     };
     let [white, black] = [1.0, 0.0].map(matt);
     assert!(
-        white > 1e-3 && black == 0.0,
+        white > 0.001 && black == 0.0,
         "cut {white} of white and {black} of black"
     );
 }
@@ -257,7 +248,7 @@ fn a_coloured_metal_takes_its_colour_each_time() {
         let leaves = f64::sqrt(kept);
         let again = 0.5 * leaves / (1.0 - 0.5 * (1.0 - leaves));
         let expected = 0.5 * (kept + again * (1.0 - kept));
-        assert!((found - expected).abs() < 2e-3, "at {cosine}: {found} for {expected}");
+        near!(found, expected, 0.002, "at {cosine}");
     }
 }
 

@@ -14,9 +14,8 @@ use glossmith::{
 };
 
 use super::{
-    ui::{Editor, editor_of, options, request, see, wait},
-    ui_files::wait_for_words,
-    ui_hands::{Hands as _, press},
+    cli_support::Workplace,
+    ui::{Editor, editor_of, options},
 };
 
 /// An editor with the user's folder, its panel showing only what has this in its name.
@@ -45,73 +44,71 @@ fn files(folder: &Path) -> Vec<MaterialSettings> {
 
 #[test]
 fn own_presets_are_saved_found_again_used_renamed_and_deleted() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
+    let folder = Workplace::new();
     let mut own = PRESETS[3].clone();
     own.name = "Zebra".to_owned();
     own.roughness = 0.77;
-    let mut harness = editor_showing(folder.path(), "Zebra");
-    request(&mut harness, Action::UseMaterial(Box::new(own.clone())));
+    let mut harness = editor_showing(folder.root(), "Zebra");
+    harness.request(Action::UseMaterial(Box::new(own.clone())));
     harness.command(Command::SaveToMyPresets);
     // Its name is asked for, and begins as the material's.
-    see(&mut harness, "the name", |harness| {
+    harness.see("the name", |harness| {
         harness.query_by_role_and_label(Role::TextInput, "New name").is_some()
     });
     harness.run_steps(2);
     harness.key_press(Key::Enter);
-    see(&mut harness, "the preset", |harness| has_button(harness, "Zebra"));
-    assert_eq!(files(&folder.path().join("materials")), [own.clone()]);
+    harness.see("the preset", |harness| has_button(harness, "Zebra"));
+    assert_eq!(files(&folder.path("materials")), [own.clone()]);
     // Closed as it should be: nothing unsaved is offered at the next start.
     eframe::App::on_exit(harness.state_mut());
     drop(harness);
 
-    let mut harness = editor_showing(folder.path(), "Z");
-    see(&mut harness, "the preset", |harness| has_button(harness, "Zebra"));
+    let mut harness = editor_showing(folder.root(), "Z");
+    harness.see("the preset", |harness| has_button(harness, "Zebra"));
     harness.check_accessibility();
-    assert_ne!(harness.document().materials[0], own);
-    press(&mut harness, "Zebra");
-    assert_eq!(harness.document().materials[0], own);
+    assert_ne!(*harness.material(), own);
+    harness.press("Zebra");
+    assert_eq!(*harness.material(), own);
 
-    press(&mut harness, "Rename, export or delete Zebra");
-    press(&mut harness, "Rename");
+    harness.press("Rename, export or delete Zebra");
+    harness.press("Rename");
     harness.write("New name", "Zinc");
     harness.key_press(Key::Enter);
-    see(&mut harness, "the new name", |harness| has_button(harness, "Zinc"));
+    harness.see("the new name", |harness| has_button(harness, "Zinc"));
     assert!(!has_button(&harness, "Zebra"));
     own.name = "Zinc".to_owned();
-    assert_eq!(files(&folder.path().join("materials")), [own.clone()]);
+    assert_eq!(files(&folder.path("materials")), [own.clone()]);
 
-    press(&mut harness, "Rename, export or delete Zinc");
-    press(&mut harness, "Duplicate");
-    see(&mut harness, "the copy", |harness| has_button(harness, "Zinc copy"));
-    press(&mut harness, "Rename, export or delete Zinc copy");
-    press(&mut harness, "Delete");
-    see(&mut harness, "the copy to go", |harness| {
-        !has_button(harness, "Zinc copy")
-    });
+    harness.press("Rename, export or delete Zinc");
+    harness.press("Duplicate");
+    harness.see("the copy", |harness| has_button(harness, "Zinc copy"));
+    harness.press("Rename, export or delete Zinc copy");
+    harness.press("Delete");
+    harness.see("the copy to go", |harness| !has_button(harness, "Zinc copy"));
 
-    press(&mut harness, "Rename, export or delete Zinc");
-    press(&mut harness, "Delete");
-    see(&mut harness, "it to go", |harness| !has_button(harness, "Zinc"));
-    assert_eq!(files(&folder.path().join("materials")), []);
-    press(&mut harness, "Restore zinc");
-    see(&mut harness, "it to come back", |harness| has_button(harness, "Zinc"));
-    assert_eq!(files(&folder.path().join("materials")), [own]);
+    harness.press("Rename, export or delete Zinc");
+    harness.press("Delete");
+    harness.see("it to go", |harness| !has_button(harness, "Zinc"));
+    assert_eq!(files(&folder.path("materials")), []);
+    harness.press("Restore zinc");
+    harness.see("it to come back", |harness| has_button(harness, "Zinc"));
+    assert_eq!(files(&folder.path("materials")), [own]);
 }
 
 #[test]
 fn a_folder_that_cannot_be_written_is_named() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let file = folder.path().join("file");
+    let folder = Workplace::new();
+    let file = folder.path("file");
     std::fs::write(&file, "no folder").expect("a temporary file");
     let mut harness = editor_showing(&file, "");
     harness.command(Command::SaveToMyPresets);
-    wait(&mut harness, "the message", |app| {
+    harness.wait("the message", |app| {
         let is_named = |text: &String| text.contains("materials") && text.contains("permissions");
         app.messages().iter().any(is_named)
     });
     let mut harness = editor_of(options());
     harness.command(Command::SaveToMyPresets);
-    wait_for_words(&mut harness, "no folder for your materials");
+    harness.wait_for_words("no folder for your materials");
 }
 
 /// The colour in the corner of a preset's picture, beside where a dot would be.
@@ -126,18 +123,18 @@ fn corner(harness: &mut Editor, name: &str) -> [u8; 4] {
 
 #[test]
 fn presets_show_pictures_which_are_kept() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
+    let folder = Workplace::new();
     let mut harness = editor_of(Options {
-        cache: Some(folder.path().to_owned()),
+        cache: Some(folder.root().to_owned()),
         ..options()
     });
     harness.run_steps(3);
     let first = &PRESETS[0];
-    let picture = |material| folder.path().join(format!("thumbnails/{:016x}.png", key(material)));
+    let picture = |material| folder.path(format!("thumbnails/{:016x}.png", key(material)));
     let before = corner(&mut harness, &first.name);
     let shown = 6;
     for material in &PRESETS[..shown] {
-        see(&mut harness, "the picture", |_| picture(material).exists());
+        harness.see("the picture", |_| picture(material).exists());
     }
     harness.run_steps(3);
     let after = corner(&mut harness, &first.name);
@@ -147,13 +144,17 @@ fn presets_show_pictures_which_are_kept() {
 /// A material with images is a folder of its own, which holds all that it needs and comes back whole.
 #[test]
 fn materials_with_images_are_folders() {
-    let place = tempfile::tempdir().expect("a temporary folder");
-    let folder = place.path().join("materials");
-    let images = [place.path().join("a/wood.png"), place.path().join("b/wood.png")];
+    let place = Workplace::new();
+    let folder = place.path("materials");
+    let images = [place.path("a/wood.png"), place.path("b/wood.png")];
     let mut material = PRESETS[0].clone();
     material.name = "Oak floor".to_owned();
-    let targets = [TextureTarget::BaseColor, TextureTarget::Roughness, TextureTarget::Coat];
-    let files = [images[0].clone(), images[1].clone(), place.path().join("gone.png")];
+    let targets = [
+        TextureTarget::BaseColor,
+        TextureTarget::Roughness,
+        TextureTarget::CoatColor,
+    ];
+    let files = [images[0].clone(), images[1].clone(), place.path("gone.png")];
     for (number, image) in images.iter().enumerate() {
         std::fs::create_dir_all(image.parent().expect("a folder")).expect("made");
         std::fs::write(image, [number as u8]).expect("written");
@@ -167,10 +168,11 @@ fn materials_with_images_are_folders() {
             },
         );
     }
+    assert_eq!(material.coat_weight, 1.0, "what has a colour is there");
     let path = library::add(&folder, &material).expect("added");
     assert_eq!(path, folder.join("oak-floor.material/oak-floor.json"));
     // Nothing of it lies elsewhere but what was gone before.
-    std::fs::remove_dir_all(place.path().join("a")).expect("removed");
+    std::fs::remove_dir_all(place.path("a")).expect("removed");
     let load = |path: &Path| load_material(path).expect("a material").value;
     let image = |material: &MaterialSettings, target: usize| {
         let texture = material.user_textures.get(targets[target]).expect("it has one");

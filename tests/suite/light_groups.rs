@@ -1,7 +1,12 @@
 //! Light groups: their light adds up to all light on both engines, each is the light of its sources alone, and their mix
 //! needs no new samples.
 
-use super::{cli_support::Workplace, cli_support::channels, lights::lit_scenes, renders::document, renders::render};
+use super::{
+    cli_support::Workplace,
+    cli_support::channels,
+    lights::lit_scenes,
+    renders::{adjust, document, render},
+};
 use glossmith::{
     document::{AreaLight, Background, Document, GroundKind, GroupName, LightMix, light_groups::emission_group},
     job::film::Film,
@@ -22,7 +27,7 @@ fn scenes() -> Vec<(&'static str, Document)> {
         scenes.push(("shadow catcher", caught));
     }
     for (_, document) in &mut scenes {
-        (document.render.width, document.render.height, document.render.samples) = (24, 24, 6);
+        adjust(document, "render.width=24 render.height=24 render.samples=6");
         document.lighting.light_groups = true;
         if let Some(light) = document.lighting.area_lights.first_mut() {
             light.group = GroupName::new("key");
@@ -52,10 +57,7 @@ fn the_groups_are_all_light_on_both_engines() {
                     for channel in 0..3 {
                         let parts: f64 = film.lights(pixel).iter().map(|sums| sums[number][channel]).sum();
                         let whole = half.color[channel];
-                        assert!(
-                            (parts - whole).abs() <= 1e-5 * (1.0 + whole),
-                            "{name}: {parts} of {whole}"
-                        );
+                        near!(parts, whole, 1e-5 * (1.0 + whole), "{name}");
                     }
                 }
             }
@@ -66,10 +68,7 @@ fn the_groups_are_all_light_on_both_engines() {
             let whole = total(cpu, None);
             println!("{name}: {on_cpu} and {on_gpu} of {whole}");
             // Rounding sends a few paths elsewhere.
-            assert!(
-                (on_cpu - on_gpu).abs() <= 0.02 * whole,
-                "{name}: {on_cpu} and {on_gpu} of {whole}"
-            );
+            near!(on_cpu, on_gpu, 0.02 * whole, "{name}");
         }
     }
 }
@@ -120,7 +119,7 @@ fn a_group_is_the_light_of_its_sources() {
             total(&render(EngineChoice::Cpu, &alone), None),
         );
         println!("{name}: {apart} and {alone}");
-        assert!((apart / alone - 1.0).abs() < 0.02, "{name}: {apart} and {alone}");
+        near!(apart / alone, 1.0, 0.02, "{name}");
     }
 }
 
@@ -146,10 +145,7 @@ fn a_mix_is_the_weighed_sum_and_starts_nothing_over() {
             let of_key = (even[channel] + odd[channel]) / samples;
             let expected = before.mean(pixel)[channel] + (factor - 1.0) * of_key;
             let found = f64::from(found[channel]);
-            assert!(
-                (found - expected).abs() <= 1e-5 * (1.0 + expected),
-                "{found} for {expected}"
-            );
+            near!(found, expected, 1e-5 * (1.0 + expected));
         }
     }
     // The denoiser gets the mix as well.
@@ -185,7 +181,7 @@ fn the_command_line_writes_and_mixes_groups() {
         for (pixel, found) in after[channel].iter().enumerate() {
             let of = |name: &str| before[&format!("light.{name}.{channel}")][pixel];
             let expected = of("environment") + of("lights") + sun * of("sun");
-            assert!((found - expected).abs() <= 1e-5 * (1.0 + expected));
+            near!(found, expected, 1e-5 * (1.0 + expected));
         }
     }
     place.done("render b.png --engine cpu --output c.exr");

@@ -8,7 +8,11 @@ use glossmith::{
     scene::{ModelSource, environment::EnvironmentSource},
 };
 
-use super::{cli_support::Workplace, lights::lit_scenes, renders::document, renders::render};
+use super::{
+    cli_support::Workplace,
+    lights::lit_scenes,
+    renders::{adjust, document, render},
+};
 
 /// Scenes where light is reflected between surfaces, with lights and without, and with a shadow catcher.
 fn scenes() -> Vec<(&'static str, Document)> {
@@ -24,8 +28,10 @@ fn scenes() -> Vec<(&'static str, Document)> {
     caught.lighting.background = Background::Environment;
     scenes.push(("shadow catcher", caught));
     for (_, document) in &mut scenes {
-        (document.render.width, document.render.height, document.render.samples) = (24, 24, 4);
-        document.render.bounces = 6;
+        adjust(
+            document,
+            "render.width=24 render.height=24 render.samples=4 render.bounces=6",
+        );
     }
     scenes
 }
@@ -44,14 +50,14 @@ fn direct_and_indirect_light_are_all_light() {
             let film = |paths| render(engine, &of(&document, paths));
             let [all, direct, indirect] = [LightPaths::All, LightPaths::Direct, LightPaths::Indirect].map(film);
             let sum = |film: &glossmith::job::film::Film| film.colors().map(|[r, g, b, _]| r + g + b).sum::<f64>();
-            assert!(sum(&direct) > 1e-3 * sum(&all), "{name}: there is direct light");
-            with_both += usize::from(sum(&indirect) > 1e-3 * sum(&all));
+            assert!(sum(&direct) > 0.001 * sum(&all), "{name}: there is direct light");
+            with_both += usize::from(sum(&indirect) > 0.001 * sum(&all));
             let mut off = 0;
             for pixel in 0..all.pixel_count() {
                 let [whole, direct, indirect] = [&all, &direct, &indirect].map(|film| film.color(pixel));
                 let differs = (0..3).any(|channel| {
                     let parts = direct[channel] + indirect[channel];
-                    (parts - whole[channel]).abs() > 1e-4 * (1.0 + whole[channel])
+                    (parts - whole[channel]).abs() > 0.0001 * (1.0 + whole[channel])
                 });
                 off += usize::from(differs);
             }
@@ -75,8 +81,10 @@ fn a_convex_body_in_the_open_has_no_indirect_light() {
     let sphere = document(ModelSource::Sphere, EnvironmentSource::Studio, &[]);
     let film = render(EngineChoice::Cpu, &of(&sphere, LightPaths::Indirect));
     assert!(film.colors().all(|[r, g, b, _]| [r, g, b] == [0.0; 3]));
-    assert!(
-        (film.image().pixels[0][3] - 1.0).abs() < SQRT_2 * f32::EPSILON,
+    near!(
+        film.image().pixels[0][3],
+        1.0,
+        SQRT_2 * f32::EPSILON,
         "what is covered stays so"
     );
 }

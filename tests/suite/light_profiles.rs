@@ -1,7 +1,11 @@
 //! Light profiles: the light below a lamp is that of its file's intensities on both engines; files and names on the
 //! command line and in projects. The files are built here.
 
-use super::{cli_support::Workplace, cli_support::read_exr, renders::document, renders::render};
+use super::{
+    cli_support::Workplace,
+    cli_support::read_exr,
+    renders::{adjust, document, render},
+};
 use glam::DVec3;
 use glossmith::{
     document::{AreaLight, AreaLightShape, Background, Document, ProfileFile},
@@ -10,11 +14,9 @@ use glossmith::{
     render::EngineChoice,
     scene::{
         AreaFrame, AreaShape, ModelSource, Outline,
-        camera::PixelFilter,
         environment::EnvironmentSource,
         light_profile::{LightProfile, profile_share},
     },
-    store::{load_document, save_document},
 };
 use std::f64::consts::PI;
 
@@ -60,15 +62,14 @@ pub fn floor(file: &std::path::Path) -> (Document, AreaLight, f64) {
     document.camera.position = Some([0.0, CAMERA_HEIGHT, 0.0]);
     document.camera.fov_deg = 30.0;
     (document.render.width, document.render.height) = (SIDE as u32, SIDE as u32);
-    (document.render.samples, document.render.filter) = (256, PixelFilter::Box);
-    document.render.bounces = 1;
+    adjust(&mut document, "render.samples=256 render.filter=box render.bounces=1");
     (document, lamp, radius)
 }
 
 #[test]
 fn a_floor_is_lit_by_the_intensities_of_the_file() {
     let place = Workplace::new();
-    place.write("lamp.ies", LAMP.as_bytes());
+    place.write("lamp.ies", LAMP);
     let (document, lamp, _) = floor(&place.path("lamp.ies"));
     let frame = lamp.shape().frame();
     let half = (15.0_f64).to_radians().tan() * CAMERA_HEIGHT;
@@ -94,10 +95,7 @@ fn a_floor_is_lit_by_the_intensities_of_the_file() {
             }
             println!("{engine:?}, block {block}: {found:.2} for {expected:.2}");
             // Half of the samples are of the lamp's far side: 1.6 % of noise in a block.
-            assert!(
-                (found / expected - 1.0).abs() < 0.06,
-                "{engine:?}, block {block}: {found} for {expected}"
-            );
+            near!(found / expected, 1.0, 0.06, "{engine:?}, block {block}");
         }
     }
 }
@@ -105,7 +103,7 @@ fn a_floor_is_lit_by_the_intensities_of_the_file() {
 #[test]
 fn the_command_line_and_projects_name_profiles() {
     let place = Workplace::new();
-    place.write("lamp.ies", LAMP.as_bytes());
+    place.write("lamp.ies", LAMP);
     place.write("broken.ies", b"TILT=NONE\n1 1 1 2 1 1 1 0 0 0 1 1 1 0 90 0 1");
     let light = "--area-light 0,60,2,0.1,0.1,50,sphere";
     let scene = "--model sphere --engine cpu --size 12x12 --samples 4 --environment-strength 0";
@@ -132,13 +130,13 @@ fn the_command_line_and_projects_name_profiles() {
         profile: Some(ProfileFile::new(&place.path("lamp.ies"))),
         ..AreaLight::default()
     }];
-    save_document(&place.path("p.json"), &document).unwrap();
+    place.save_document("p.json", &document);
     assert!(
         place.read("p.json").contains("\"profile\": \"lamp.ies\""),
         "{}",
         place.read("p.json")
     );
-    assert_eq!(load_document(&place.path("p.json")).unwrap().value, document);
+    assert_eq!(place.document("p.json"), document);
     assert!(
         document.pictures().any(|file| file.ends_with("lamp.ies")),
         "batches look after it"
@@ -220,7 +218,7 @@ fn between_the_angles_intensities_are_linear() {
         let profile = profile.expect("a profile");
         for (angles, expected) in rows {
             let found = share(&profile, angles);
-            assert!((found - expected).abs() < 0.01, "{angles:?}: {found} for {expected}");
+            near!(found, expected, 0.01, "{angles:?}");
         }
     }
 }
@@ -228,15 +226,15 @@ fn between_the_angles_intensities_are_linear() {
 #[test]
 fn the_mean_is_that_of_all_directions() {
     let even = LightProfile::new(vec![0.0, 180.0], &[0.0], &[7.0, 7.0]).expect("a profile");
-    assert!((even.lumens() - 28.0 * PI).abs() < 1e-9);
+    near!(even.lumens(), 28.0 * PI, 1e-9);
     let half = LightProfile::new(vec![0.0, 90.0], &[0.0, 180.0], &[6.0, 6.0, 2.0, 2.0]).expect("a profile");
-    assert!((half.lumens() - 8.0 * PI).abs() < 1e-9);
+    near!(half.lumens(), 8.0 * PI, 1e-9);
 }
 
 const HEAD: &str = "IESNA:LM-63-2002\r\n[TEST] built by a test\r\nTILT=NONE\r\n";
 
 fn parsed(place: &Workplace, text: &str) -> Result<LightProfile, String> {
-    place.write("lamp.ies", text.as_bytes());
+    place.write("lamp.ies", text);
     light_profile::load(&place.path("lamp.ies")).map_err(|error| error.to_string())
 }
 
@@ -247,9 +245,9 @@ fn profiles_are_read_as_programs_write_them() {
         &place,
         &format!("{HEAD}1 1000 2 3 1 1 2 0 0 0\n1 1 20\n0 45 90\n0\n50 50\n 50\n"),
     );
-    assert!((plain.expect("a profile").lumens() - 200.0 * PI).abs() < 1e-3);
+    near!(plain.expect("a profile").lumens(), 200.0 * PI, 0.001);
     let tilted = "TILT=INCLUDE\n1\n2\n0 90\n1,0.9\n1 -1 1 2 1 1 1 0 0 0 0.5 1 20 0 180 0 10 10";
-    assert!((parsed(&place, tilted).expect("a profile").lumens() - 20.0 * PI).abs() < 1e-6);
+    near!(parsed(&place, tilted).expect("a profile").lumens(), 20.0 * PI, 1e-6);
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! Views of lobes: their numbers against known ones, their files.
 
+use crate::cli_support::Workplace;
 use glossmith::{
     analysis::quadrature::integrate_hemisphere,
     optics::curve::Curve,
@@ -49,11 +50,7 @@ fn albedos_are_the_integrals_of_the_lobes() {
             let wo = view_direction(angle_deg.to_radians());
             let expected = integrate_hemisphere(512, |wi| lobe_evaluate(&lobe.shape(), &frame, NORMAL, wo, wi)[0]);
             let albedo = values(&lines(ViewKind::Albedo, lobe, &[angle_deg]), "albedo")[0];
-            assert!(
-                (albedo - expected).abs() < 3e-3,
-                "{} {angle_deg}: {albedo} for {expected}",
-                lobe.name
-            );
+            near!(albedo, expected, 0.003, "{} {angle_deg}", lobe.name);
         }
     }
 }
@@ -99,7 +96,7 @@ fn csv_has_its_columns_and_every_view_is_drawn() {
         (ViewKind::Distance, "lobe,distance,density"),
     ];
     assert_eq!(columns.map(|(kind, _)| kind), ViewKind::ALL);
-    let folder = tempfile::tempdir().unwrap();
+    let folder = Workplace::new();
     for (kind, header) in columns {
         let view = lobe_view(kind, &lobes, &[20.0, 60.0]);
         let csv = view.csv();
@@ -115,7 +112,7 @@ fn csv_has_its_columns_and_every_view_is_drawn() {
                 "{row}"
             );
         }
-        let [png, svg] = ["png", "svg"].map(|ending| folder.path().join(format!("{}.{ending}", kind.name())));
+        let [png, svg] = ["png", "svg"].map(|ending| folder.path(format!("{}.{ending}", kind.name())));
         for path in [&png, &svg] {
             std::fs::write(path, plot_file(path, &view).unwrap()).unwrap();
         }

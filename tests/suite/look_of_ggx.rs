@@ -55,7 +55,7 @@ fn reflections_are_as_wide_as_the_file_says() {
         let roughness = step as f32 / 40.0;
         let [found, expected] = LOBES.map(|lobe| median_deg(&glass(roughness, 1.5, lobe).shape(&[])));
         println!("{roughness}: {found}, GGX {expected}");
-        assert!((found - expected).abs() < 2.0, "{roughness}: {found}, GGX {expected}");
+        near!(found, expected, 2.0, "{roughness}");
     }
 }
 
@@ -76,9 +76,11 @@ fn refractions_are_as_wide_as_the_file_says() {
             println!("{ior} {is_inside} {roughness}: {found}, GGX {expected}");
             // Of the median of so many samples 2 %.
             let tolerance = 0.15 * expected + 0.02;
-            assert!(
-                (found - expected).abs() < tolerance,
-                "index {ior}, from within {is_inside}, roughness {roughness}: {found}, GGX {expected}"
+            near!(
+                found,
+                expected,
+                tolerance,
+                "index {ior}, from within {is_inside}, roughness {roughness}"
             );
         }
     }
@@ -130,11 +132,7 @@ fn a_roughness_texture_is_not_cut_off() {
             vec3(1.0, 1.0, 1.0),
         );
         let expected = geometric_from_ggx(roughness);
-        assert!(
-            (there.roughness - expected).abs() < 1e-3,
-            "{roughness}: {}, not {expected}",
-            there.roughness
-        );
+        near!(there.roughness, expected, 0.001);
     }
     for (factor, values, lobe) in [
         (1.0, [51, 240], Lobe::Ggx),

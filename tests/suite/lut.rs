@@ -1,11 +1,11 @@
 //! Tables of colours: by the command line and in projects.
 
-use super::cli_support::Workplace;
+use super::{cli_support::Workplace, renders::adjust};
 use glossmith::{
     document::Document,
     optics::{tone::Lut, vector::vec3},
     scene::ModelSource,
-    store::{load_document, lut::load, save_document},
+    store::lut::load,
 };
 
 /// Black for white and white for black.
@@ -14,13 +14,13 @@ const NEGATIVE: &str = "TITLE \"negative\"\nLUT_1D_SIZE 2\n1 1 1\n0 0 0\n";
 #[test]
 fn a_picture_goes_through_a_table_last() {
     let place = Workplace::new();
-    place.write("negative.cube", NEGATIVE.as_bytes());
+    place.write("negative.cube", NEGATIVE);
     let scene = "--model sphere --engine cpu --size 12x12 --samples 2";
     let codes = |name: &str| image::open(place.path(name)).unwrap().to_rgb8().into_raw();
     place.done(&format!("render {scene} --output plain.png"));
     place.done(&format!("render {scene} --output negative.png --lut negative.cube"));
     for (plain, negative) in std::iter::zip(codes("plain.png"), codes("negative.png")) {
-        assert!((i32::from(plain) + i32::from(negative) - 255).abs() <= 1);
+        near!(i32::from(plain) + i32::from(negative), 255, 1);
     }
     // Light stays light.
     place.done(&format!("render {scene} --output plain.exr"));
@@ -44,14 +44,14 @@ fn a_picture_goes_through_a_table_last() {
         ..Document::default()
     };
     document.view.lut = Some(place.path("negative.cube"));
-    (document.render.width, document.render.height, document.render.samples) = (12, 12, 2);
-    save_document(&place.path("p.json"), &document).unwrap();
+    adjust(&mut document, "render.width=12 render.height=12 render.samples=2");
+    place.save_document("p.json", &document);
     assert!(
         place.read("p.json").contains("\"lut\": \"negative.cube\""),
         "{}",
         place.read("p.json")
     );
-    assert_eq!(load_document(&place.path("p.json")).unwrap().value, document);
+    assert_eq!(place.document("p.json"), document);
     place.done("render p.json --engine cpu --output saved.png");
     assert_eq!(codes("saved.png"), codes("negative.png"));
     std::fs::remove_file(place.path("negative.cube")).unwrap();
@@ -98,7 +98,7 @@ fn a_cube_is_linear_between_its_entries() {
 fn tables_are_read_as_programs_write_them() {
     let place = Workplace::new();
     let read = |text: &str| {
-        place.write("a.cube", text.as_bytes());
+        place.write("a.cube", text);
         load(&place.path("a.cube")).map_err(|error| error.to_string())
     };
     let curve = "# by hand\n\nLUT_1D_SIZE 2\nDOMAIN_MIN 0 0 0\nDOMAIN_MAX 1 1 2\n 0 0 0\n1 1\t1\r\n";

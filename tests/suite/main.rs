@@ -22,6 +22,18 @@ pub fn program() -> &'static str {
     &PROGRAM
 }
 
+/// Fails where a number isn't as expected, within a tolerance; words may say which number.
+macro_rules! near {
+    ($found:expr, $expected:expr, $tolerance:expr) => {
+        near!($found, $expected, $tolerance, "")
+    };
+    ($found:expr, $expected:expr, $tolerance:expr, $($what:tt)+) => {{
+        let (found, expected, tolerance) = ($found, $expected, $tolerance);
+        let what = format_args!($($what)+);
+        assert!((found - expected).abs() <= tolerance, "{found} instead of {expected} ± {tolerance} {what}");
+    }};
+}
+
 mod analytic;
 mod analytic_bodies;
 mod analytic_lobes;

@@ -9,7 +9,7 @@ use glossmith::app::{
 };
 use std::{path::Path, sync::LazyLock};
 
-use super::{docs::text_of, ui::Editor, ui::editor, ui_hands::Hands as _, ui_hands::press};
+use super::{docs::text_of, ui::Editor, ui::editor};
 
 macro_rules! pages {
     ($($path:literal)*) => {
@@ -45,7 +45,7 @@ fn shows(harness: &Editor, address: &str) -> bool {
 }
 
 fn close(harness: &mut Editor) {
-    press(harness, "Close window");
+    harness.press("Close window");
     assert!(!harness.has("Contents"));
 }
 

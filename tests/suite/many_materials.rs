@@ -10,7 +10,7 @@ use glossmith::{
     render::{EngineChoice, Session},
 };
 
-use super::{plan::job_in, random_documents::apart};
+use super::{plan::job_in, random_documents::apart, renders::adjust};
 
 /// The job with its one material in the last of so many slots; all others shine.
 fn in_the_last_of(slots: usize, job: &Job) -> Job {
@@ -35,7 +35,7 @@ fn in_the_last_of(slots: usize, job: &Job) -> Job {
 #[test]
 fn many_materials_look_as_few_do() {
     let mut document = Document::default();
-    (document.render.width, document.render.height) = (64, 48);
+    adjust(&mut document, "render.width=64 render.height=48");
     let mut session = Session::open(EngineChoice::Cpu).expect("the processor");
     let job = job_in(&mut session, &document);
     let device = GpuDevice::open(AdapterKind::Any).expect("an adapter: install mesa-vulkan-drivers");
@@ -50,7 +50,7 @@ fn many_materials_look_as_few_do() {
     for slots in [2, FEW_MATERIALS, FEW_MATERIALS + 1, 5 * FEW_MATERIALS, 3] {
         let [off, whole] = apart(&luminance(in_the_last_of(slots, &job)), &one);
         assert!(
-            off < 1e-3 && whole < 1e-4,
+            off < 0.001 && whole < 0.0001,
             "{slots} slots: {off} of the pixels, the whole by {whole}"
         );
     }

@@ -8,14 +8,16 @@ use glossmith::{
     store::project::document_text,
 };
 
-use crate::{cli_support::Workplace, worker::small_document};
+use crate::{cli_support::Workplace, renders::adjust, worker::small_document};
 
 const MIB: u64 = 1 << 20;
 
 fn of_size(side: u32) -> Document {
     let mut document = small_document();
-    (document.render.width, document.render.height) = (side, side);
-    document.render.samples = 1;
+    adjust(
+        &mut document,
+        &format!("render.width={side} render.height={side} render.samples=1"),
+    );
     document
 }
 
@@ -63,7 +65,7 @@ fn command_line_and_project_files_refuse_alike() {
     project.render.samples = 1;
     place.write(
         "large.json",
-        document_text(&place.path("large.json"), &project).unwrap().as_bytes(),
+        document_text(&place.path("large.json"), &project).unwrap(),
     );
     for arguments in ["render --engine cpu --size 8000x8000 --output a.png", "large.json"] {
         let output = Command::new(crate::program())

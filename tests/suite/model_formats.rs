@@ -1,7 +1,10 @@
 //! Models in other formats than glTF: OBJ with its materials, FBX, PLY, STL; folders and archives.
 
-use super::gltf_builder::{Folder, glb, png, square};
 use super::gltf_extensions::says;
+use super::{
+    cli_support::Workplace,
+    gltf_builder::{glb, png, square},
+};
 use glam::{DVec3, Vec2, Vec3};
 use glossmith::{
     document::{ImportLobe, of_model::materials_of},
@@ -18,10 +21,10 @@ const MTL: &str = "newmtl Paint\nKd 0.5 0.25 1\nKs 0.5 0.5 0.5\nNs 30\nmap_Kd -s
 
 #[test]
 fn obj_files_come_with_their_materials() {
-    let folder = Folder::new();
-    std::fs::write(folder.path("Paint.mtl"), MTL).unwrap();
+    let folder = Workplace::new();
+    folder.write("Paint.mtl", MTL);
     // Another name by its case, and not in the folder that is named.
-    std::fs::write(folder.path("wood.png"), png()).unwrap();
+    folder.write("wood.png", png());
     let model = folder.load("plate.obj", OBJ.as_bytes()).expect("loads");
     assert_eq!((model.name.as_str(), model.mesh.triangles.len()), ("plate", 3));
     // v grows downwards here.
@@ -87,9 +90,9 @@ const ODD_MTL: &str = "newmtl Clear\nKd 0 0 1\nKs spectral steel.rfl\nTr 0.75\nT
 /// Nothing of an OBJ file is refused for a line: it goes on after a `\\`, `usemtl` may be without a name, `vt` without v.
 #[test]
 fn odd_lines_of_obj_files_cost_themselves_alone() {
-    let folder = Folder::new();
-    std::fs::write(folder.path("odd.mtl"), [ODD_MTL.as_bytes(), b"# \xe9t\xe9\n"].concat()).unwrap();
-    std::fs::write(folder.path("four columns.png"), png()).unwrap();
+    let folder = Workplace::new();
+    folder.write("odd.mtl", [ODD_MTL.as_bytes(), b"# \xe9t\xe9\n"].concat());
+    folder.write("four columns.png", png());
     let model = folder.load("odd.obj", ODD.as_bytes()).expect("loads");
     assert_eq!(
         (model.mesh.triangles.len(), model.slots.len()),
@@ -111,7 +114,7 @@ fn odd_lines_of_obj_files_cost_themselves_alone() {
     // Grey, not white.
     std::fs::remove_file(folder.path("four columns.png")).unwrap();
     let mtl = "newmtl Clear\nKd 1 1 0\nKe 1 1 1\nmap_Kd four columns.png\nmap_Ke gone.png\n";
-    std::fs::write(folder.path("odd.mtl"), mtl).unwrap();
+    folder.write("odd.mtl", mtl);
     let grey = folder.load("odd.obj", ODD.as_bytes()).expect("loads");
     assert_eq!(grey.slots[0].color("base.color"), [0.5, 0.5, 0.0]);
     assert_eq!(grey.slots[0].color("emission.color"), [0.0; 3]);
@@ -121,7 +124,7 @@ fn odd_lines_of_obj_files_cost_themselves_alone() {
 /// Two squares with one line changed: what exporters write is read, and what none writes is refused.
 #[test]
 fn lines_of_an_obj_file_are_read_or_refused() {
-    let folder = Folder::new();
+    let folder = Workplace::new();
     let good = "v 0 0 0\nv 1 0 \\\n0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvn 0 0 1\n\
                 f 1/1/1 2/2/1 3/3/1\nf 1/1/1 3/3/1 4/1/1\nf 2/1/1 5/2/1 6/3/1\n";
     let load = |from: &str, to: &str| {
@@ -199,7 +202,7 @@ fn area(model: &Model) -> f64 {
 /// What the dialects of the format have: each file with the area that it covers, and the normals at its start and end.
 #[test]
 fn dialects_of_obj_files_are_read() {
-    let folder = Folder::new();
+    let folder = Workplace::new();
     let roof = "v -1 -1 -.5\nv 0 -1 0\nv 1 -1 -.5\nv -1 1 -.5\nv 0 1 0\nv 1 1 -.5\n";
     let square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
     for (name, text, covered, middle) in [
@@ -237,7 +240,7 @@ fn dialects_of_obj_files_are_read() {
         ),
     ] {
         let model = folder.load("a.obj", text.as_bytes()).expect(name);
-        assert!((area(&model) - covered).abs() < 1e-9, "{name}: {}", area(&model));
+        near!(area(&model), covered, 1e-9, "{name}");
         let on_edge = |place: &DVec3| place.x == 0.0 && place.z == 0.0;
         let mut edge = model
             .mesh
@@ -259,9 +262,9 @@ fn dialects_of_obj_files_are_read() {
 /// Libraries in the words of many exporters.
 #[test]
 fn dialects_of_libraries_are_read() {
-    let folder = Folder::new();
-    std::fs::write(folder.path("picture.png"), png()).unwrap();
-    std::fs::write(folder.path("other.mtl"), "newmtl other\nKd 1 0 0\n").unwrap();
+    let folder = Workplace::new();
+    folder.write("picture.png", png());
+    folder.write("other.mtl", "newmtl other\nKd 1 0 0\n");
     let obj = "mtllib\tother.mtl m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl m\nf 1/1 2/2 3/3\n";
     for (library, color, texture) in [
         ("newmtl m\nkd 0.5 0.25 0\n", [0.5, 0.25, 0.0], false),
@@ -270,14 +273,14 @@ fn dialects_of_libraries_are_read() {
         ("newmtl m\nKd xyz 0.9505 1 1.089\n", [1.0; 3], false),
         ("newmtl m\nKd 1 1 1\nmap_d picture.png\n", [1.0; 3], true),
     ] {
-        std::fs::write(folder.path("m.mtl"), library).unwrap();
+        folder.write("m.mtl", library);
         let model = folder.load("m.obj", obj.as_bytes()).expect("loads");
         let [slot] = &model.slots[..] else {
             panic!("{library}: one slot")
         };
         let apart = |i: usize| (slot.color("base.color")[i] - color[i]).abs();
         assert!(
-            (0..3).all(|i| apart(i) < 1e-3),
+            (0..3).all(|i| apart(i) < 0.001),
             "{library}: {:?}",
             slot.color("base.color")
         );
@@ -353,9 +356,22 @@ Connections:  {
 }
 "#;
 
+const GLOSSY: &str = r#"P: "3dsMax|ClassIDa", "int", "Integer", "",-804315648
+            P: "3dsMax|ClassIDb", "int", "Integer", "",31173939
+            P: "3dsMax|main|useGlossiness", "int", "Integer", "",1
+            P: "3dsMax|main|glossiness", "float", "", "A",1
+            P: "Opacity""#;
+const GLOSS_MAP: &str = r#"    Texture: 40, "Texture::Gloss", "" {
+        Type: "TextureVideoClip"
+        RelativeFilename: "gloss.png"
+    }
+}
+Connections:  {
+    C: "OP",40,30, "3dsMax|main|glossiness_map""#;
+
 #[test]
 fn fbx_files_come_in_metres_with_y_up() {
-    let folder = Folder::new();
+    let folder = Workplace::new();
     let model = folder.load("plate.fbx", FBX.as_bytes()).expect("loads");
     let names: Vec<&str> = model.objects.iter().map(|object| object.name.as_str()).collect();
     assert_eq!((names, model.mesh.triangles.len()), (vec!["Plate", "Other"], 4));
@@ -383,6 +399,15 @@ fn fbx_files_come_in_metres_with_y_up() {
     let numbers = ["specular.roughness", "geometry.opacity", "base.metalness"].map(|key| red.number(key));
     assert_eq!((red.color("base.color"), numbers), ([0.5, 0.25, 0.0], [0.5, 0.75, 0.0]));
     says(&model, Fate::Approximated, "Phong");
+    // What 3ds Max has for its glossiness.
+    std::fs::write(folder.path("gloss.png"), png()).unwrap();
+    let glossy = FBX
+        .replace("ShadingModel: \"phong\"", "ShadingModel: \"max\"")
+        .replace("P: \"Opacity\"", GLOSSY)
+        .replace("}\nConnections:  {", GLOSS_MAP);
+    let model = folder.load("glossy.fbx", glossy.as_bytes()).expect("loads");
+    let map = model.slots[0].texture(TextureTarget::Roughness).expect("a map").texture;
+    assert_eq!(model.textures[map].rgba8[1], 235);
     // Visibility was a percentage, which the crate takes for 0.
     let old = "; FBX 5.0.0 project file\nModel: \"Model::Plate\" {\n Vertices: 0,0,0,100,0,0,100,100,0\n PolygonVertexIndex: 0,1,-3\n MaterialAssignation: \"AllSame\"\n \
                Channel: \"Visibility\" {\n Default: SHARE\n }\n}\n";
@@ -410,7 +435,7 @@ fn fbx_files_come_in_metres_with_y_up() {
 /// Surfaces without a material are clay in every format. What is coloured by its vertices has no other colour.
 #[test]
 fn surfaces_without_a_material_are_clay() {
-    let folder = Folder::new();
+    let folder = Workplace::new();
     let (mut buffer, bare) = square();
     let mut colored = bare.clone();
     colored["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = buffer.floats(&[[1.0, 0.5, 0.0]; 4]).into();
@@ -473,14 +498,14 @@ fn assert_colored_square(model: &Model) {
     let [red, green, blue, _] = model.mesh.colors[1];
     // 188 is the sRGB code of a half.
     assert!(
-        (red - 0.503).abs() < 1e-3 && green == 0.0 && blue == 1.0,
+        (red - 0.503).abs() < 0.001 && green == 0.0 && blue == 1.0,
         "{red} {green} {blue}"
     );
 }
 
 #[test]
 fn ply_files_may_be_text_or_bytes() {
-    let folder = Folder::new();
+    let folder = Workplace::new();
     let places = [[0.0f32, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
     let mut text = ply_header("ascii");
     for [x, y, z] in places {
@@ -506,7 +531,7 @@ fn ply_files_may_be_text_or_bytes() {
 /// Numbers of a text PLY file are those of C; a row that is no row of its element, and a file that is cut short, are refused.
 #[test]
 fn rows_of_a_ply_file_are_read_or_refused() {
-    let folder = Folder::new();
+    let folder = Workplace::new();
     let header = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
                   property uchar red\nproperty uchar green\nproperty uchar blue\nelement face 2\n\
                   property list uchar int vertex_indices\nend_header\n";
@@ -541,7 +566,7 @@ fn rows_of_a_ply_file_are_read_or_refused() {
 
 #[test]
 fn stl_files_may_be_text_or_bytes() {
-    let folder = Folder::new();
+    let folder = Workplace::new();
     let text = "solid one\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 5\nendloop\nendfacet\nendsolid one\n";
     let mut bytes = vec![0; 80];
     bytes.extend(1u32.to_le_bytes());
@@ -561,7 +586,7 @@ fn stl_files_may_be_text_or_bytes() {
 /// Text is known by what it contains; all its solids are read, and loops of more corners than three.
 #[test]
 fn text_of_stl_files_is_read_as_programs_write_it() {
-    let folder = Folder::new();
+    let folder = Workplace::new();
     let corners = |places: &[&str]| -> String { places.iter().map(|place| format!("vertex {place}\n")).collect() };
     let facet = |places: &[&str]| format!("facet normal 0 0 1\nouter loop\n{}endloop\nendfacet\n", corners(places));
     let one = facet(&["0 0 0", "1 0 0", "0 1 0"]);
@@ -599,8 +624,8 @@ fn text_of_stl_files_is_read_as_programs_write_it() {
 /// colour, the area.
 #[test]
 fn parts_of_ply_files_are_read_under_all_their_names() {
-    let folder = Folder::new();
-    std::fs::write(folder.path("wood.png"), png()).unwrap();
+    let folder = Workplace::new();
+    folder.write("wood.png", png());
     let load = |vertices: &str, values: [&str; 6], faces: &str, rows: &str| {
         let places = ["-1 -1 0", "1 -1 0", "1 1 0", "-1 1 0", "0 0 0", "0 0 0"];
         let body: String = places
@@ -664,7 +689,7 @@ fn parts_of_ply_files_are_read_under_all_their_names() {
     );
     // A dent at its fourth corner, which a fan from the first would fill.
     let model = load("", [""; 6], &format!("face 1\n{list}"), "5 1 2 3 0 4\n");
-    assert!((area(&model) - 3.0).abs() < 1e-9, "{}", area(&model));
+    near!(area(&model), 3.0, 1e-9);
     let strips = load(
         "",
         [""; 6],
@@ -688,7 +713,7 @@ fn parts_of_ply_files_are_read_under_all_their_names() {
 /// A scene with Z up: a mesh with a subset, two more of it as instances, a lamp of 100 nits and a camera; alone and in a package.
 #[test]
 fn usd_files_come_with_instances_lights_and_cameras() {
-    let folder = Folder::new();
+    let folder = Workplace::new();
     let text = std::fs::read_to_string(std::path::Path::new(crate::ROOT).join("fuzz/corpus/usd/quad.usd")).unwrap();
     let mut package = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
     let stored = zip::write::SimpleFileOptions::default().compression_method(zip::CompressionMethod::Stored);
@@ -717,12 +742,19 @@ fn usd_files_come_with_instances_lights_and_cameras() {
         let ([lamp], [camera]) = (&model.lights[..], &model.cameras[..]) else {
             panic!("{name}: {:?} {:?}", model.lights, model.cameras)
         };
-        assert!(
-            (lamp.intensity - 100.0 * std::f32::consts::PI / 4.0).abs() < 1e-3,
-            "{lamp:?}"
-        );
-        assert!((camera.position[2] - 4.0).abs() < 1e-9, "{camera:?}");
+        near!(lamp.intensity, 100.0 * std::f32::consts::PI / 4.0, 0.001);
+        near!(camera.position[2], 4.0, 1e-9);
     }
+    // The second instance is turned half, and the cage is smooth across the edge of both faces.
+    let turns = "quath[] orientations = [(1, 0, 0, 0), (0, 0, 0, 1)]\npoint3f[] positions";
+    let turned = text
+        .replace("\"none\"", "\"catmullClark\"")
+        .replace("point3f[] positions", turns);
+    let mesh = folder.load("turned.usd", turned.as_bytes()).unwrap().mesh;
+    let high = mesh.positions.iter().copied().reduce(DVec3::max).unwrap();
+    assert!(high.abs_diff_eq(DVec3::new(4.0, 3.0, 1.0), 1e-6), "{high}");
+    let mean = Vec3::new(1.0, 2.0, 0.0).normalize();
+    assert!(mesh.normals.iter().any(|normal| normal.abs_diff_eq(mean, 1e-6)));
     let deep = format!("#usda 1.0\n{}", "def \"a\" {".repeat(1000));
     let error = folder
         .load("deep.usd", deep.as_bytes())
@@ -735,7 +767,7 @@ fn usd_files_come_with_instances_lights_and_cameras() {
 #[test]
 fn usd_shapes_become_meshes() {
     use std::f64::consts::PI;
-    let folder = Folder::new();
+    let folder = Workplace::new();
     for (shape, half, volume) in [
         (
             "Sphere \"S\" {\n double radius = 2\n}",
@@ -755,10 +787,7 @@ fn usd_shapes_become_meshes() {
         let high = model.mesh.positions.iter().copied().reduce(DVec3::max).unwrap();
         assert!(high.abs_diff_eq(DVec3::from_array(half), 1e-9), "{shape}: {high}");
         let found = model.mesh.signed_volume();
-        assert!(
-            (found - volume).abs() <= 0.01 * volume,
-            "{shape}: {found} in place of {volume}"
-        );
+        near!(found, volume, 0.01 * volume, "{shape}");
         says(&model, Fate::Ignored, "BasisCurves");
     }
 }
@@ -766,7 +795,7 @@ fn usd_shapes_become_meshes() {
 /// The colours of a prim without a material, and of one whose material asks for them.
 #[test]
 fn usd_colours_of_prims_are_those_of_vertices() {
-    let folder = Folder::new();
+    let folder = Workplace::new();
     let look = "def Material \"M\"\n{\n token outputs:surface.connect = </M/S.outputs:surface>\n def Shader \"S\"\n {\n uniform token info:id = \
                 \"UsdPreviewSurface\"\n color3f inputs:diffuseColor.connect = </M/R.outputs:result>\n token outputs:surface\n }\n def Shader \
                 \"R\"\n {\n uniform token info:id = \"UsdPrimvarReader_float3\"\n string inputs:varname = \"displayColor\"\n float3 \
@@ -785,7 +814,7 @@ fn usd_colours_of_prims_are_those_of_vertices() {
 /// A material of a MaterialX layer through a graph's interface and an image, for a model and as a material.
 #[test]
 fn usd_refers_to_layers_of_materialx() {
-    let folder = Folder::new();
+    let folder = Workplace::new();
     let picture = image::RgbImage::from_pixel(2, 2, image::Rgb([255, 0, 0]));
     picture.save(folder.path("red.png")).unwrap();
     let layer = r#"<materialx version="1.38" colorspace="lin_rec709">
@@ -805,7 +834,7 @@ fn usd_refers_to_layers_of_materialx() {
         <input name="surfaceshader" type="surfaceshader" nodename="s"/>
       </surfacematerial>
     </materialx>"#;
-    std::fs::write(folder.path("look.mtlx"), layer).unwrap();
+    folder.write("look.mtlx", layer);
     let text = "#usda 1.0\ndef Sphere \"Ball\" (\n prepend apiSchemas = [\"MaterialBindingAPI\"]\n)\n{\n rel material:binding = </M>\n}\n\
                 def Material \"M\" (\n prepend references = @./look.mtlx@</MaterialX/Materials/look>\n)\n{\n}\n";
     let model = folder.load("ball.usda", text.as_bytes()).unwrap();
@@ -829,7 +858,7 @@ fn usd_refers_to_layers_of_materialx() {
 
 #[test]
 fn folders_and_archives_are_searched_for_a_model() {
-    let folder = Folder::new();
+    let folder = Workplace::new();
     let (buffer, mut document) = square();
     document["buffers"][0]["uri"] = serde_json::json!("../data/square.bin");
     let archive = folder.path("pack.zip");
@@ -857,6 +886,7 @@ fn folders_and_archives_are_searched_for_a_model() {
             .of(Fate::Used)
             .any(|entry| entry.names == ["pack/model/square.gltf"])
     );
+    assert!(model.report.is_clean(), "{:?}", model.report);
 
     let inside = folder.path("things");
     std::fs::create_dir(&inside).unwrap();

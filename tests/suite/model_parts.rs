@@ -14,8 +14,8 @@ use glossmith::{
 };
 use serde_json::json;
 
-use super::cli_support::{write_exr, write_hdr};
-use super::gltf_builder::{Folder, glb, png, square};
+use super::cli_support::{Workplace, write_exr, write_hdr};
+use super::gltf_builder::{glb, png, square};
 
 fn with(beside: Vec<PathBuf>) -> ModelOptions {
     ModelOptions {
@@ -25,7 +25,7 @@ fn with(beside: Vec<PathBuf>) -> ModelOptions {
 }
 
 /// A square with a texture, its buffer and picture in files of their own.
-fn scattered(folder: &Folder) -> [PathBuf; 3] {
+fn scattered(folder: &Workplace) -> [PathBuf; 3] {
     let (buffer, mut document) = square();
     document["buffers"][0]["uri"] = json!("square.bin");
     document["images"] = json!([{"uri": "textures/Wood.png"}]);
@@ -45,7 +45,7 @@ fn scattered(folder: &Folder) -> [PathBuf; 3] {
 
 #[test]
 fn what_a_model_names_is_found_among_the_files_given_with_it() {
-    let folder = Folder::new();
+    let folder = Workplace::new();
     let [model, buffer, picture] = scattered(&folder);
     let source = ModelSource::File(model.clone());
     let error = load_with(&source, &ModelOptions::default()).expect_err("its buffer is elsewhere");
@@ -66,7 +66,7 @@ fn what_a_model_names_is_found_among_the_files_given_with_it() {
 
 #[test]
 fn models_given_together_are_shown_together() {
-    let folder = Folder::new();
+    let folder = Workplace::new();
     let [model, buffer, picture] = scattered(&folder);
     let stl = "solid one\nfacet normal 0 0 1\nouter loop\nvertex 5 0 0\nvertex 6 0 0\nvertex 5 0 1\nendloop\nendfacet\nendsolid one\n";
     let part = folder.path("part.stl");
@@ -88,7 +88,7 @@ fn models_given_together_are_shown_together() {
     // A project finds them again from its folder.
     let project = folder.path("project.json");
     let document = Document {
-        model: ModelSource::File(folder.path("a/square.gltf")),
+        model: folder.model("a/square.gltf"),
         import: options.clone(),
         ..Document::default()
     };
@@ -99,7 +99,7 @@ fn models_given_together_are_shown_together() {
 
 #[test]
 fn loading_tells_what_it_does_and_ends_when_it_is_called_off() {
-    let folder = Folder::new();
+    let folder = Workplace::new();
     let [model, buffer, picture] = scattered(&folder);
     let (source, options) = (ModelSource::File(model), with(vec![buffer, picture]));
     let loading = Loading::default();

@@ -13,7 +13,7 @@ use glossmith::{
     scene::{ModelSource, environment::EnvironmentSource},
 };
 
-use crate::renders::set;
+use crate::renders::adjust;
 
 const SIDE: u32 = 24;
 
@@ -23,9 +23,11 @@ fn document(model: ModelSource, environment: EnvironmentSource, assignments: &[&
         ..Document::default()
     };
     document.lighting.environment = environment;
-    set(&mut document.materials[0], &assignments.join(" "));
-    (document.render.width, document.render.height) = (SIDE, SIDE);
-    document.render.bounces = 6;
+    adjust(&mut document, &assignments.join(" "));
+    adjust(
+        &mut document,
+        &format!("render.width={SIDE} render.height={SIDE} render.bounces=6"),
+    );
     document
 }
 
@@ -94,8 +96,7 @@ fn the_true_error_lies_inside_the_band() {
     for (scene, mut document) in scenes().into_iter().enumerate() {
         for sequence in [Sequence::Sobol, Sequence::Independent] {
             for samples in [16, 50] {
-                document.render.sequence = sequence;
-                document.render.samples = samples;
+                (document.render.sequence, document.render.samples) = (sequence, samples);
                 let films = renders(&mut session, &document, RENDERS);
                 let estimate: Vec<_> = films.iter().map(|film| noise(film).unwrap()).collect();
                 let errors = true_errors(&films);
@@ -119,10 +120,7 @@ fn the_true_error_lies_inside_the_band() {
                     here >= 18,
                     "scene {scene}, {sequence:?}, {samples}: {here} of {RENDERS}"
                 );
-                assert!(
-                    (ratio - 1.0).abs() < 3.5 * sigma,
-                    "scene {scene}, {sequence:?}, {samples}: {ratio} ± {sigma}"
-                );
+                near!(ratio, 1.0, 3.5 * sigma, "scene {scene}, {sequence:?}, {samples}");
                 (inside, cases) = (inside + here, cases + films.len());
             }
         }
@@ -146,7 +144,7 @@ fn a_render_stops_at_the_error_asked_for() {
     let matt = ["base.metalness=0 specular.weight=0"];
     let mut document = document(ModelSource::Teapot, EnvironmentSource::Studio, &matt);
     document.lighting.background = Background::Color([0.3; 3]);
-    (document.render.width, document.render.height) = (48, 48);
+    adjust(&mut document, "render.width=48 render.height=48");
     document.render.samples = u32::MAX;
     document.render.noise = Some(NOISE);
     for (choice, adaptive, [off, mean_off]) in [
@@ -165,13 +163,10 @@ fn a_render_stops_at_the_error_asked_for() {
             session.progress().mean_samples
         );
         for error in &errors {
-            assert!((error / NOISE - 1.0).abs() < off, "{choice:?}, {adaptive}: {errors:?}");
+            near!(error / NOISE, 1.0, off, "{choice:?}, {adaptive}: {errors:?}");
         }
         let mean = errors.iter().sum::<f64>() / f64::from(RENDERS);
-        assert!(
-            (mean / NOISE - 1.0).abs() < mean_off,
-            "{choice:?}, {adaptive}: {errors:?}"
-        );
+        near!(mean / NOISE, 1.0, mean_off, "{choice:?}, {adaptive}: {errors:?}");
         let counts = counts(&films[0]);
         let has_uneven = counts.iter().any(|n| *n != counts[0]);
         assert_eq!(has_uneven, adaptive);
@@ -201,7 +196,7 @@ fn mean_and_variance(films: &[Film]) -> (Vec<f64>, Vec<f64>) {
 #[test]
 fn an_adaptive_picture_is_the_plain_one() {
     let mut document = scenes()[2].clone();
-    (document.render.width, document.render.height) = (48, 48);
+    adjust(&mut document, "render.width=48 render.height=48");
     // Variances are honest for independent numbers.
     document.render.sequence = Sequence::Independent;
     let mut session = Session::open(EngineChoice::Cpu).unwrap();
@@ -227,7 +222,7 @@ fn an_adaptive_picture_is_the_plain_one() {
         },
     );
     assert!(
-        outcome.p_value > 1e-3 && outcome.beyond_three_sigma < 0.01,
+        outcome.p_value > 0.001 && outcome.beyond_three_sigma < 0.01,
         "{outcome:?}"
     );
     let difference: f64 = a.iter().zip(&b).map(|(a, b)| a - b).sum();
@@ -239,14 +234,13 @@ fn an_adaptive_picture_is_the_plain_one() {
 #[test]
 fn the_first_of_the_limits_counts_and_a_new_one_goes_on() {
     let mut document = scenes()[0].clone();
-    document.render.samples = 4;
-    document.render.noise = Some(0.02);
+    adjust(&mut document, "render.samples=4 render.noise=0.02");
     let mut session = Session::open(EngineChoice::Cpu).unwrap();
     let film = finish(&mut session, &document);
     assert_eq!(session.progress().stopped_by, Some(StopReason::Samples));
     assert!(counts(&film).iter().all(|n| *n == 4.0));
     document.render.samples = u32::MAX;
-    document.render.time_s = Some(1e-3);
+    document.render.time_s = Some(0.001);
     finish(&mut session, &document);
     assert_eq!(session.progress().stopped_by, Some(StopReason::Time));
     document.render.time_s = None;

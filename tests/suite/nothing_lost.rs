@@ -11,11 +11,13 @@ use glossmith::{
     store::{PRESETS, examples::still_life, load_document, save_document},
 };
 
-use super::ui::{Editor, editor_of, options, request, see, wait};
-use super::ui_hands::{Hands as _, press};
+use super::{
+    cli_support::Workplace,
+    ui::{Editor, editor_of, options},
+};
 
 /// An editor that keeps unsaved edits in a folder.
-pub(super) fn keeping_editor(data: &Path) -> Editor {
+pub fn keeping_editor(data: &Path) -> Editor {
     editor_of(Options {
         data: Some(data.to_owned()),
         autosave_interval: Some(Duration::from_millis(20)),
@@ -23,10 +25,10 @@ pub(super) fn keeping_editor(data: &Path) -> Editor {
     })
 }
 
-pub(super) fn edit(harness: &mut Editor, roughness: f32) {
+pub fn edit(harness: &mut Editor, roughness: f32) {
     harness.run_steps(3);
     harness.set("Specular roughness", f64::from(roughness));
-    assert_eq!(harness.document().materials[0].roughness, roughness);
+    assert_eq!(harness.material().roughness, roughness);
 }
 
 /// Documents put aside in a data folder.
@@ -44,7 +46,7 @@ fn kept(data: &Path) -> Vec<Document> {
 fn edit_until_kept(harness: &mut Editor, data: &Path, roughness: f32) {
     edit(harness, roughness);
     let is_kept = |document: &Document| document.materials[0].roughness == roughness;
-    see(harness, "the copy", |_| kept(data).iter().any(is_kept));
+    harness.see("the copy", |_| kept(data).iter().any(is_kept));
 }
 
 /// Asks the window to close, as its button does; whether it does.
@@ -66,7 +68,7 @@ fn commands(harness: &Editor) -> Vec<ViewportCommand> {
 
 /// Frames until the program closes the window itself.
 fn closes_by_itself(harness: &mut Editor) {
-    see(harness, "the window to close", |harness| {
+    harness.see("the window to close", |harness| {
         commands(harness).contains(&ViewportCommand::Close)
     });
     assert!(closes(harness));
@@ -78,15 +80,13 @@ fn asks(harness: &Editor) -> bool {
 
 #[test]
 fn what_a_crash_left_is_offered_and_restored() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let mut crashed = keeping_editor(folder.path());
-    edit_until_kept(&mut crashed, folder.path(), 0.71);
+    let folder = Workplace::new();
+    let mut crashed = keeping_editor(folder.root());
+    edit_until_kept(&mut crashed, folder.root(), 0.71);
     let document = crashed.state().document().clone();
     drop(crashed);
-    let mut harness = keeping_editor(folder.path());
-    see(&mut harness, "the offer", |harness| {
-        harness.has("Unsaved work was found")
-    });
+    let mut harness = keeping_editor(folder.root());
+    harness.see("the offer", |harness| harness.has("Unsaved work was found"));
     harness.check_accessibility();
     assert_ne!(*harness.document(), document);
     // The button has the focus.
@@ -96,15 +96,13 @@ fn what_a_crash_left_is_offered_and_restored() {
     assert!(!harness.has("Unsaved work was found"));
     assert_eq!(*harness.document(), document);
     assert!(!closes(&mut harness), "it is still unsaved");
-    see(&mut harness, "one file, of this window", |_| {
-        kept(folder.path()).len() == 1
-    });
-    press(&mut harness, "Discard");
+    harness.see("one file, of this window", |_| kept(folder.root()).len() == 1);
+    harness.press("Discard");
     harness.step();
     eframe::App::on_exit(harness.state_mut());
     drop(harness);
     assert_eq!(
-        kept(folder.path()).len(),
+        kept(folder.root()).len(),
         0,
         "closed as it should be, it leaves nothing"
     );
@@ -122,35 +120,35 @@ fn edits_are_put_aside_before_a_model_is_read() {
         ),
         (0.32, Action::Do(Command::Reload)),
     ] {
-        let folder = tempfile::tempdir().expect("a temporary folder");
+        let folder = Workplace::new();
         let mut harness = editor_of(Options {
-            data: Some(folder.path().to_owned()),
+            data: Some(folder.root().to_owned()),
             autosave_interval: Some(Duration::from_secs(3600)),
             ..options()
         });
-        wait(&mut harness, "the start", App::is_settled);
+        harness.wait("the start", App::is_settled);
         // The first edit is put aside at once, the second one an hour later.
-        edit_until_kept(&mut harness, folder.path(), 0.9);
+        edit_until_kept(&mut harness, folder.root(), 0.9);
         edit(&mut harness, roughness);
-        request(&mut harness, action);
-        wait(&mut harness, "the model", |app| !app.is_opening());
-        let left: Vec<f32> = kept(folder.path()).iter().map(|d| d.materials[0].roughness).collect();
+        harness.request(action);
+        harness.wait("the model", |app| !app.is_opening());
+        let left: Vec<f32> = kept(folder.root()).iter().map(|d| d.materials[0].roughness).collect();
         assert_eq!(left, [roughness]);
     }
 }
 
 #[test]
 fn a_leftover_stays_until_it_is_decided_about() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let mut crashed = keeping_editor(folder.path());
-    edit_until_kept(&mut crashed, folder.path(), 0.37);
+    let folder = Workplace::new();
+    let mut crashed = keeping_editor(folder.root());
+    edit_until_kept(&mut crashed, folder.root(), 0.37);
     drop(crashed);
     let offers = |harness: &Editor| harness.has("Unsaved work was found");
     for is_discarded in [false, true] {
-        let mut harness = keeping_editor(folder.path());
-        see(&mut harness, "the offer", offers);
+        let mut harness = keeping_editor(folder.root());
+        harness.see("the offer", offers);
         if is_discarded {
-            press(&mut harness, "Discard untitled");
+            harness.press("Discard untitled");
         } else {
             harness.key_press(Key::Escape);
         }
@@ -158,24 +156,24 @@ fn a_leftover_stays_until_it_is_decided_about() {
         assert!(!offers(&harness));
         eframe::App::on_exit(harness.state_mut());
         drop(harness);
-        assert_eq!(kept(folder.path()).len(), usize::from(!is_discarded));
+        assert_eq!(kept(folder.root()).len(), usize::from(!is_discarded));
     }
 }
 
 #[test]
 fn two_windows_keep_their_edits_apart() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let mut first = keeping_editor(folder.path());
-    edit_until_kept(&mut first, folder.path(), 0.21);
-    let mut second = keeping_editor(folder.path());
-    edit_until_kept(&mut second, folder.path(), 0.84);
+    let folder = Workplace::new();
+    let mut first = keeping_editor(folder.root());
+    edit_until_kept(&mut first, folder.root(), 0.21);
+    let mut second = keeping_editor(folder.root());
+    edit_until_kept(&mut second, folder.root(), 0.84);
     assert!(
         second.query_by_label("Unsaved work was found").is_none(),
         "the first window's edits are not lost"
     );
     eframe::App::on_exit(second.state_mut());
     drop(second);
-    let left: Vec<f32> = kept(folder.path()).iter().map(|d| d.materials[0].roughness).collect();
+    let left: Vec<f32> = kept(folder.root()).iter().map(|d| d.materials[0].roughness).collect();
     assert_eq!(left, [0.21]);
     drop(first);
 }
@@ -196,7 +194,7 @@ fn closing_asks_about_unsaved_edits_and_cancel_means_cancel() {
     harness.run_steps(2);
     assert!(!asks(&harness) && *harness.document() == document);
     assert!(!closes(&mut harness));
-    press(&mut harness, "Cancel");
+    harness.press("Cancel");
     assert!(!commands(&harness).contains(&ViewportCommand::Close));
     assert!(!closes(&mut harness));
     // By keyboard: past "Save" to "Discard".
@@ -216,14 +214,14 @@ fn closing_asks_about_unsaved_edits_and_cancel_means_cancel() {
 
 #[test]
 fn closing_saves_first_where_that_was_chosen() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let project = folder.path().join("project.json");
+    let folder = Workplace::new();
+    let project = folder.path("project.json");
     save_document(&project, &options().document.expect("given")).expect("a temporary file");
     let mut harness = editor_of(Options {
         files: vec![project.clone()],
         ..options()
     });
-    wait(&mut harness, "the start", App::is_settled);
+    harness.wait("the start", App::is_settled);
     edit(&mut harness, 0.5);
     assert!(!closes(&mut harness));
     // No frame goes by unseen: one of the next says that the window closes.
@@ -236,8 +234,8 @@ fn closing_saves_first_where_that_was_chosen() {
 
 #[test]
 fn new_and_open_ask_and_what_can_be_undone_does_not() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let project = folder.path().join("project.json");
+    let folder = Workplace::new();
+    let project = folder.path("project.json");
     let other = Document {
         ground: true,
         ..options().document.expect("given")
@@ -247,21 +245,21 @@ fn new_and_open_ask_and_what_can_be_undone_does_not() {
     edit(&mut harness, 0.5);
     let document = harness.document().clone();
     harness.command(Command::New);
-    see(&mut harness, "the question", asks);
-    press(&mut harness, "Cancel");
+    harness.see("the question", asks);
+    harness.press("Cancel");
     assert_eq!(*harness.document(), document);
-    request(&mut harness, Action::Open(project.clone()));
-    see(&mut harness, "the question", asks);
+    harness.request(Action::Open(project.clone()));
+    harness.see("the question", asks);
     assert_eq!(*harness.document(), document);
-    press(&mut harness, "Discard");
+    harness.press("Discard");
     harness.run_steps(2);
     assert_eq!(*harness.document(), other);
-    request(&mut harness, Action::UseMaterial(Box::new(PRESETS[2].clone())));
+    harness.request(Action::UseMaterial(Box::new(PRESETS[2].clone())));
     harness.run_steps(3);
     assert!(!asks(&harness));
     harness.command(Command::New);
-    see(&mut harness, "the question", asks);
-    press(&mut harness, "Discard");
+    harness.see("the question", asks);
+    harness.press("Discard");
     harness.run_steps(2);
     // The document of the start, whose noise is taken out as before.
     let mut first = still_life();

@@ -21,21 +21,21 @@ use image::{Rgba, RgbaImage};
 use serde_json::json;
 
 use crate::{
-    gltf_builder::Folder,
+    cli_support::Workplace,
     gltf_extensions::load_plain,
     random_documents::of_material,
     textures::{four_texels, textured_square},
 };
 
 /// The picture of [`four_texels`] in a file.
-pub fn own_texture(folder: &Folder) -> UserTexture {
+pub fn own_texture(folder: &Workplace) -> UserTexture {
     let path = folder.path("own.png");
     four_texels().save(&path).unwrap();
     UserTexture::of(path)
 }
 
 /// A ball whose coat has the weight that a picture on a box gives it.
-pub fn coated_on_a_box(folder: &Folder) -> Document {
+pub fn coated_on_a_box(folder: &Workplace) -> Document {
     let mut document = of_material(ModelSource::Shaderball, PRESETS[0].clone());
     let coat = UserTexture {
         projection: TextureProjection::Box,
@@ -83,7 +83,7 @@ fn found(target: TextureTarget, texture: &UserTexture, uv: [f64; 2]) -> [f64; 4]
 #[track_caller]
 fn assert_near(found: [f64; 4], expected: [f64; 4]) {
     for (a, b) in found.iter().zip(expected) {
-        assert!((a - b).abs() < 1e-5, "{found:?}, expected {expected:?}");
+        near!(a, b, 1e-5, "{found:?}, expected {expected:?}");
     }
 }
 
@@ -188,7 +188,7 @@ fn channels_spaces_strength_and_inversion_are_what_they_say() {
         ..plain
     };
     let [_, number, ..] = found(TextureTarget::Emission, &numbers, lower_left);
-    assert!((number - share).abs() < 1e-6);
+    near!(number, share, 1e-6);
 }
 
 /// A bump to the right of a picture that is turned a quarter is a bump upwards; upside down, it is one downwards.
@@ -275,10 +275,7 @@ fn on_a_box_a_picture_is_upright_from_every_side() {
             0.5 - 0.5 * middle.dot(Vec3::from_f64(up)),
         ];
         for (found, wanted) in on_box.iter().zip(wanted) {
-            assert!(
-                (found - wanted).abs() < 1e-6,
-                "side {side}: {on_box:?} in place of {wanted:?}"
-            );
+            near!(found, wanted, 1e-6, "side {side}: {on_box:?} in place of {wanted:?}");
         }
         seen[side] += 1;
     }
@@ -293,7 +290,7 @@ fn on_a_box_a_picture_is_upright_from_every_side() {
 }
 
 /// A shaderball with a picture on everything.
-pub fn dressed(folder: &Folder) -> Document {
+pub fn dressed(folder: &Workplace) -> Document {
     let mut document = Document {
         model: ModelSource::Shaderball,
         ..Document::default()
@@ -331,7 +328,7 @@ pub fn dressed(folder: &Folder) -> Document {
 
 #[test]
 fn files_keep_pictures_by_relative_paths() {
-    let folder = Folder::new();
+    let folder = Workplace::new();
     let document = dressed(&folder);
     let path = folder.path("project.json");
     save_document(&path, &document).unwrap();
@@ -347,16 +344,16 @@ fn files_keep_pictures_by_relative_paths() {
     );
     assert_eq!(load_material(&preset).unwrap().value, document.materials[0]);
     // The folder is moved, and all goes on there.
-    let moved = Folder::new();
+    let moved = Workplace::new();
     for name in ["project.json", "own.png", "bumps.png"] {
         std::fs::copy(folder.path(name), moved.path(name)).unwrap();
     }
-    let there = load_document(&moved.path("project.json")).unwrap().value;
+    let there = moved.document("project.json");
     let mut own = there
         .materials
         .iter()
         .flat_map(|material| material.user_textures.iter());
-    assert!(own.all(|(_, texture)| texture.file.starts_with(moved.0.path())));
+    assert!(own.all(|(_, texture)| texture.file.starts_with(moved.root())));
     // A value out of range is refused by name.
     let broken = text.replace("\"scale\": 2.0", "\"scale\": -2.0");
     assert_ne!(broken, text);
@@ -370,7 +367,7 @@ fn maps_of_shipped_materials_are_in_the_program_and_stay_named() {
     let with_maps = PRESETS
         .iter()
         .filter(|material| material.user_textures.iter().next().is_some());
-    let folder = Folder::new();
+    let folder = Workplace::new();
     let mut count = 0;
     for material in with_maps {
         count += 1;

@@ -1,6 +1,7 @@
 //! Both engines on the same random numbers, pixel by pixel: they trace the same paths but for rounding, and where they do
 //! not, the account of the processor's path says at which event they part.
 
+use crate::renders::adjust;
 use std::time::Duration;
 
 use glossmith::{
@@ -13,7 +14,7 @@ use glossmith::{
 };
 
 /// Radiances that count as the same, relative to the larger one and to the picture's mean.
-const SAME: f64 = 2e-3;
+const SAME: f64 = 0.002;
 
 /// Both engines, side by side.
 pub struct Pair {
@@ -116,7 +117,10 @@ impl Pair {
         let samples = document.render.samples;
         for bounces in 1..=document.render.bounces {
             for count in 1..=samples.min(4) {
-                (document.render.bounces, document.render.samples) = (bounces, count);
+                adjust(
+                    &mut document,
+                    &format!("render.bounces={bounces} render.samples={count}"),
+                );
                 let [cpu, gpu] = self.films(&document).map(|film| film.color(index));
                 let is_same = cpu
                     .iter()

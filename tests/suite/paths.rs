@@ -21,7 +21,7 @@ use crate::{
     analytic_scenes::room,
     lights::lit_scenes,
     random_documents::random_document,
-    renders::document,
+    renders::{adjust, document},
     support::{Random, sets},
 };
 
@@ -34,8 +34,7 @@ pub struct Scene {
 
 fn scene(name: &'static str, model: ModelSource, light: EnvironmentSource, assignments: &[&str]) -> Scene {
     let mut document = document(model, light, assignments);
-    (document.render.width, document.render.height) = (32, 32);
-    document.render.samples = 1;
+    adjust(&mut document, "render.width=32 render.height=32 render.samples=1");
     Scene {
         name,
         document,

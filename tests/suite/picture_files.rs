@@ -6,7 +6,7 @@ use crate::{
     gltf_builder::pictured,
     gltf_extensions::load_plain,
     gpu_pictures::ktx2,
-    renders::set,
+    renders::adjust,
 };
 use exr::prelude::WritableImage as _;
 use glossmith::{
@@ -27,21 +27,18 @@ fn document() -> Document {
         model: ModelSource::Sphere,
         ..Document::default()
     };
-    set(
-        &mut document.materials[0],
-        "base.metalness=0 base.color=0.9,0.3,0.05 specular.roughness=0.3",
+    adjust(
+        &mut document,
+        "base.metalness=0 base.color=0.9,0.3,0.05 specular.roughness=0.3 lighting.strength=2 render.width=41 \
+         render.height=29 render.samples=64 render.min_samples=4 render.noise=0.02 render.adaptive=on",
     );
     document.lighting.environment = EnvironmentSource::Studio;
-    document.lighting.strength = 2.0;
     document.lighting.background = Background::Transparent;
     document.lighting.area_lights.push(AreaLight {
         color: [1.0, 0.2, 0.1],
         ..AreaLight::default()
     });
     (document.view.tone_map, document.view.exposure_ev) = (ToneCurve::None, -0.5);
-    (document.render.width, document.render.height) = (41, 29);
-    (document.render.samples, document.render.min_samples) = (64, 4);
-    (document.render.noise, document.render.adaptive) = (Some(0.02), Some(true));
     document
 }
 
@@ -138,10 +135,7 @@ fn assert_png(path: &Path, film: &Film, exposure: f64) {
         });
         for (code, expected) in pixel.0.into_iter().zip(expected.into_iter().chain([255.0 * alpha])) {
             // To the nearest code, as far as f32 tells which.
-            assert!(
-                (f64::from(code) - expected).abs() < 0.51,
-                "{pixel:?}: {expected:?} of {mean:?}"
-            );
+            near!(f64::from(code), expected, 0.51, "{pixel:?}: {expected:?} of {mean:?}");
         }
     }
 }
@@ -153,7 +147,7 @@ fn assert_hdr(path: &Path, film: &Film) {
         // One exponent for the three: eight bits for the largest.
         let step = mean[..3].iter().copied().fold(0.0, f64::max) / 128.0;
         for (value, expected) in pixel.0.into_iter().zip(mean) {
-            assert!((f64::from(value) - expected).abs() <= step, "{pixel:?} of {mean:?}");
+            near!(f64::from(value), expected, step, "{pixel:?} of {mean:?}");
         }
     }
 }

@@ -75,30 +75,37 @@ fn a_mirror_calls_for_no_light_sampling_but_under_a_rough_coat() {
     assert!(!samples_light(|m| (m.coat_weight, m.coat_roughness) = (0.5, 0.0)));
 }
 
-#[test]
-fn the_horizon_is_left_out_where_every_view_is_steep_enough() {
-    let document = |model: ModelSource, roughness: f32| {
-        let material = MaterialSettings {
-            roughness,
-            ..MaterialSettings::default()
-        };
-        let mut document = of_material(model, material);
-        document.camera.pitch_deg = 60.0;
-        document.render.samples = 64;
-        document
+/// A body seen from high above.
+fn from_above(model: ModelSource, roughness: f32) -> Document {
+    let material = MaterialSettings {
+        roughness,
+        ..MaterialSettings::default()
     };
-    let plane = document(ModelSource::Plane, 0.4);
-    assert!(!job(&plane).plan.has(EffectId::Horizon));
-    // The kernel leaves it out: the processor's engine takes each material's.
+    let mut document = of_material(model, material);
+    document.camera.pitch_deg = 60.0;
+    document.render.samples = 64;
+    document
+}
+
+/// The kernel leaves it out: the processor's engine takes each material's.
+#[test]
+fn a_kernel_without_a_horizon_draws_the_same() {
+    let plane = from_above(ModelSource::Plane, 0.4);
     let mut session = Session::open(EngineChoice::Gpu).unwrap();
     let [specialised, general] = [plane.clone(), generally(&plane)].map(|document| film(&mut session, &document));
     assert_same_but_for_rounding(&specialised, &general, "a steep view");
+}
+
+#[test]
+fn the_horizon_is_left_out_where_every_view_is_steep_enough() {
+    let plane = from_above(ModelSource::Plane, 0.4);
+    assert!(!job(&plane).plan.has(EffectId::Horizon));
     assert!(
-        job(&document(ModelSource::Plane, 0.95)).plan.has(EffectId::Horizon),
+        job(&from_above(ModelSource::Plane, 0.95)).plan.has(EffectId::Horizon),
         "rough"
     );
     assert!(
-        job(&document(ModelSource::Sphere, 0.4)).plan.has(EffectId::Horizon),
+        job(&from_above(ModelSource::Sphere, 0.4)).plan.has(EffectId::Horizon),
         "a silhouette"
     );
     let edits: [(&str, Edit); 4] = [
@@ -150,7 +157,7 @@ fn the_plan_is_printed_and_effects_are_chosen_on_the_command_line() {
     for effect in EFFECTS {
         assert!(text.contains(effect.name()), "{} is missing:\n{text}", effect.name());
     }
-    let json: serde_json::Value = serde_json::from_str(&place.read("plan.json")).unwrap();
+    let json: serde_json::Value = place.json("plan.json");
     assert_eq!(json["effects"].as_array().unwrap().len(), EFFECTS.len());
     let effects = |arguments: &str| -> Vec<String> {
         serde_json::from_value(place.report(&format!("--model sphere --ground {arguments}"))["effects"].clone())

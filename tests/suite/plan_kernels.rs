@@ -20,13 +20,13 @@ use glossmith::{
 };
 
 use crate::{
+    cli_support::Workplace,
     fuzz_layer::fuzzy_on_a_box,
-    gltf_builder::Folder,
     gltf_meaning::shining_by_vertices,
     own_textures::coated_on_a_box,
     plan::job_in,
     random_documents::{apart, of_material, random_document, small},
-    renders::set,
+    renders::adjust,
     support::Random,
     terminator::coarse,
     textures::{all_at_once, coated_all_over},
@@ -156,12 +156,12 @@ fn assert_same_bits(specialised: &Film, general: &Film, what: &str) {
     assert_eq!(specialised.dropped(), general.dropped(), "{what}");
 }
 
-/// The share of pixels that rounding may move by more than 1e-3, and how far it may move the whole image.
+/// The share of pixels that rounding may move by more than 0.001, and how far it may move the whole image.
 pub const ROUNDED_PIXELS: f64 = 0.01;
-pub const ROUNDED_WHOLE: f64 = 1e-3;
+pub const ROUNDED_WHOLE: f64 = 0.001;
 
 /// Different code orders and fuses the same arithmetic differently, so that last bits differ, and now and then a decision
-/// of a path with them: nearly all pixels agree to 1e-3, and the whole image does.
+/// of a path with them: nearly all pixels agree to 0.001, and the whole image does.
 pub fn assert_same_but_for_rounding(a: &Film, b: &Film, what: &str) {
     let [off, whole] = apart(&a.luminance(), &b.luminance());
     println!("{:.2} % of pixels off, the whole by {whole:.1e}", 100.0 * off);
@@ -243,29 +243,29 @@ fn what_kernels_leave_out_shows_nowhere() {
 }
 
 /// Weak and coloured: documents in which every effect of the materials takes part in the picture, but hardly.
-fn weak_documents([folder, of_coat]: [&Folder; 2]) -> Vec<Document> {
+fn weak_documents([folder, of_coat]: [&Workplace; 2]) -> Vec<Document> {
     let mut metals = of_material(ModelSource::Shaderball, PRESETS[0].clone());
-    set(
-        &mut metals.materials[0],
+    adjust(
+        &mut metals,
         "base.metalness=1 specular.fresnel=schlick specular.roughness=0.3 specular.edge_tint=1,0.6,1 \
          specular.anisotropy=0.1 coat.weight=0.04 coat.roughness=0.3 emission.color=0,0,0.02 \
          emission.strength=1 geometry.opacity=0.96",
     );
     let mut rough = of_material(ModelSource::Shaderball, PRESETS[0].clone());
-    set(
-        &mut rough.materials[0],
+    adjust(
+        &mut rough,
         "base.metalness=0.5 base.diffuse_roughness=0.5 fuzz.weight=0.2 thin_film.weight=0.3 thin_film.thickness=2 \
          specular.lobe=ggx specular.roughness=0.5",
     );
     let mut glass = of_material(ModelSource::Shaderball, PRESETS[0].clone());
-    set(
-        &mut glass.materials[0],
+    adjust(
+        &mut glass,
         "base.metalness=0.04 base.color=0,0,0.9 specular.roughness=0.2 transmission.weight=0.5 \
          transmission.color=1,1,0.6 transmission.depth=0.5",
     );
     let mut coated = of_material(ModelSource::Shaderball, PRESETS[0].clone());
-    set(
-        &mut coated.materials[0],
+    adjust(
+        &mut coated,
         "coat.weight=0.5 coat.lobe=ggx coat.roughness=0.5 coat.color=0.9,0.6,0.3 coat.on_base=on",
     );
     glass.camera.aperture = 0.05;
@@ -291,7 +291,7 @@ fn weak_documents([folder, of_coat]: [&Folder; 2]) -> Vec<Document> {
 #[test]
 fn weak_effects_are_in_their_kernels() {
     // Both write a model of one name.
-    let folders = [Folder::new(), Folder::new()];
+    let folders = [Workplace::new(), Workplace::new()];
     let mut engine = gpu();
     let mut seen = HashSet::new();
     for (number, (document, job)) in jobs(weak_documents(folders.each_ref())).enumerate() {
@@ -349,7 +349,7 @@ fn weak_effects_are_in_their_kernels() {
 #[test]
 fn the_general_kernel_draws_what_the_plan_says() {
     let mut engine = gpu();
-    let folder = Folder::new();
+    let folder = Workplace::new();
     let textured = small(all_at_once(&folder));
     for (document, job) in random_jobs(12).chain(jobs([textured])) {
         let planned = on_cpu(as_its_kernel_reads(&job));

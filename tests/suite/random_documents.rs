@@ -12,8 +12,7 @@ use crate::support::Random;
 
 /// Small enough that many are rendered.
 pub fn small(mut document: Document) -> Document {
-    (document.render.width, document.render.height) = (24, 24);
-    document.render.samples = 4;
+    (document.render.width, document.render.height, document.render.samples) = (24, 24, 4);
     document
 }
 
@@ -26,12 +25,12 @@ pub fn of_material(model: ModelSource, material: MaterialSettings) -> Document {
     })
 }
 
-/// How far pictures (luminances) of the same random numbers are apart: the share of pixels that are off by more than 1e-3,
+/// How far pictures (luminances) of the same random numbers are apart: the share of pixels that are off by more than 0.001,
 /// and the whole, relative.
 pub fn apart(specialised: &[f64], general: &[f64]) -> [f64; 2] {
     let pixels = general.len() as f64;
     let mean = general.iter().sum::<f64>() / pixels;
-    let is_off = |(a, b): &(&f64, &f64)| (*a - *b).abs() > 1e-3 * b.max(mean);
+    let is_off = |(a, b): &(&f64, &f64)| (*a - *b).abs() > 0.001 * b.max(mean);
     let off = std::iter::zip(specialised, general).filter(is_off).count() as f64 / pixels;
     let whole = (specialised.iter().sum::<f64>() / pixels - mean).abs() / mean.max(1e-12);
     [off, whole]

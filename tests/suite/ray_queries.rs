@@ -10,13 +10,13 @@ use glossmith::{
     render::{EngineChoice, Session},
 };
 
-use super::{cli_support::Workplace, cli_support::read_exr, plan::job_in, random_documents::apart};
+use super::{cli_support::Workplace, cli_support::read_exr, plan::job_in, random_documents::apart, renders::adjust};
 
 /// The share of pixels that may be off by more than a thousandth, and how far the whole image may be: rays at edges meet
 /// the triangle on the other side, after which a path goes elsewhere. All other hits have the same numbers, as these are
 /// computed by the same arithmetic once the triangle is known.
 const PARTED_PIXELS: f64 = 0.005;
-const PARTED_WHOLE: f64 = 1e-3;
+const PARTED_WHOLE: f64 = 0.001;
 
 fn adapter() -> GpuAdapter {
     GpuAdapter::find(AdapterKind::Any).expect("an adapter: install mesa-vulkan-drivers")
@@ -55,8 +55,7 @@ fn film(engine: &mut GpuEngine, job: &Arc<Job>) -> Film {
 /// The teapot on the ground under the sky and a light from a side, and holes in it or none.
 fn lit(yaw_deg: f64, opacity: f32) -> Document {
     let mut document = Document::default();
-    (document.render.width, document.render.height) = (64, 48);
-    document.render.bounces = 4;
+    adjust(&mut document, "render.width=64 render.height=48 render.bounces=4");
     document.ground = true;
     document.materials[0].opacity = opacity;
     document.lighting.area_lights = vec![AreaLight {
@@ -142,7 +141,7 @@ fn the_switch_holds_and_is_told() {
     };
     assert_eq!([on.as_str(), off.as_str()], [expected, "own"]);
     let difference = with.difference(&without);
-    assert!(difference < 1e-3, "the pictures differ by {difference}");
+    assert!(difference < 0.001, "the pictures differ by {difference}");
     let told = |switch: &str| {
         let arguments = "render --engine gpu --size 8x8 --samples 1 --output told.exr --ray-queries";
         place.done(&format!("{arguments} {switch}")).stderr

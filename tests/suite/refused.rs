@@ -11,7 +11,7 @@ use glossmith::{
 };
 use wgpu::{BufferUsages, util::BufferInitDescriptor, util::DeviceExt};
 
-use super::worker::small_document;
+use super::{renders::adjust, worker::small_document};
 
 const STEP: Duration = Duration::from_millis(20);
 /// On a machine that has other things to do.
@@ -38,7 +38,7 @@ pub fn is_alike(a: &Image, b: &Image) -> bool {
         let channels = a.iter().zip(b);
         channels
             .into_iter()
-            .all(|(a, b)| (a - b).abs() <= 1e-4 * (a + b + 0.01))
+            .all(|(a, b)| (a - b).abs() <= 0.0001 * (a + b + 0.01))
     };
     a.pixels.iter().zip(&b.pixels).all(is_near)
 }
@@ -93,7 +93,7 @@ fn what_the_adapter_cannot_hold_leaves_the_old_picture_in_the_making() {
     refused.lighting.environment = wide;
     let mut large = document.clone();
     // Not even a row of tiles has room.
-    (large.render.width, large.render.height) = (8000, 8);
+    adjust(&mut large, "render.width=8000 render.height=8");
     session.device().expect("it renders").limit_buffers(1 << 20);
     for refused in [&refused, &large] {
         let error = session.submit(refused).expect_err("the adapter can't");
@@ -122,8 +122,7 @@ fn what_the_adapter_cannot_hold_leaves_the_old_picture_in_the_making() {
 #[test]
 fn small_bindings_show_the_same_picture() {
     let mut document = Document::default();
-    (document.render.width, document.render.height) = (120, 90);
-    document.render.samples = 4;
+    adjust(&mut document, "render.width=120 render.height=90 render.samples=4");
     let picture_within = |bytes| {
         let mut session = gpu();
         session.device().expect("it is open").limit_buffers(bytes);

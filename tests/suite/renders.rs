@@ -5,9 +5,8 @@ use std::time::Duration;
 
 use glossmith::{
     analysis::error::{Estimates, z_test},
-    document::{Document, MaterialSettings, PixelFilter, assign, effect::EffectSwitches},
+    document::{Document, MaterialSettings, assign, effect::EffectSwitches},
     job::film::Film,
-    optics::random::Sequence,
     render::{Assets, EngineChoice, Session},
     scene::{ModelSource, environment::EnvironmentSource},
 };
@@ -16,6 +15,13 @@ use glossmith::{
 pub fn set(material: &mut MaterialSettings, assignments: &str) {
     for assignment in assignments.split_whitespace() {
         assign(material, assignment).unwrap();
+    }
+}
+
+/// Makes assignments to the settings of a document and to all its materials.
+pub fn adjust(document: &mut Document, assignments: &str) {
+    for assignment in assignments.split_whitespace() {
+        document.assign(assignment).unwrap();
     }
 }
 
@@ -34,11 +40,10 @@ pub fn document(model: ModelSource, light: EnvironmentSource, assignments: &[&st
         ..Document::default()
     };
     document.lighting.environment = light;
-    document.render.width = 64;
-    document.render.height = 64;
-    document.render.samples = 64;
-    document.render.filter = PixelFilter::Box;
-    document.render.sequence = Sequence::Independent;
+    adjust(
+        &mut document,
+        "render.width=64 render.height=64 render.samples=64 render.filter=box render.sequence=independent",
+    );
     document
 }
 
@@ -88,11 +93,11 @@ fn render_with(session: &mut Session, document: &Document) -> Film {
 }
 
 /// The share of pixels whose luminances differ by more than three standard deviations of their noise.
-pub(super) fn beyond_three_sigma(a: &Film, b: &Film) -> f64 {
+pub fn beyond_three_sigma(a: &Film, b: &Film) -> f64 {
     let (mean_a, mean_b) = (a.luminance(), b.luminance());
     // Rounding of f32 radiance beside the noise.
     let floored = |film: &Film, mean: &[f64]| -> Vec<f64> {
-        let floor = |(variance, mean): (f64, &f64)| variance + (1e-4 * mean.max(1e-3)).powi(2);
+        let floor = |(variance, mean): (f64, &f64)| variance + (0.0001 * mean.max(0.001)).powi(2);
         film.variance_of_mean().into_iter().zip(mean).map(floor).collect()
     };
     let (variance_a, variance_b) = (floored(a, &mean_a), floored(b, &mean_b));

@@ -27,10 +27,7 @@ fn single_scattering_has_its_closed_albedo() {
     for (roughness, expected) in [(1.0, [0.77652, 0.84036, 0.94721]), (0.5, [0.87420, 0.91014, 0.97029])] {
         for (cosine, expected) in COSINES.iter().zip(expected) {
             let found = single_albedo(*cosine, roughness);
-            assert!(
-                (found - expected).abs() < 1e-5,
-                "{roughness}, {cosine}: {found} for {expected}"
-            );
+            near!(found, expected, 1e-5, "{roughness}, {cosine}");
         }
     }
 }
@@ -49,10 +46,7 @@ fn albedos_are_those_of_the_model() {
             let evaluator = Evaluator::open(&material, engine, precision).unwrap();
             for (cosine, expected) in COSINES.iter().zip(expected) {
                 let found = evaluator.albedo(*cosine, 1 << 15, 3).unwrap().reflected[1];
-                assert!(
-                    (found - expected).abs() < 1.5e-3,
-                    "{engine:?}, {albedo}, {roughness}, {cosine}: {found} for {expected}"
-                );
+                near!(found, expected, 1.5e-3, "{engine:?}, {albedo}, {roughness}, {cosine}");
             }
         }
     }

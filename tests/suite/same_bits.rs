@@ -16,8 +16,8 @@ fn files(place: &Workplace, arguments: &str, threads: u32) -> (Vec<Vec<u8>>, f64
         .output()
         .unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let report: serde_json::Value = serde_json::from_str(&place.read("a.json")).unwrap();
-    let bytes = ["a.exr", "a.png"].map(|name| std::fs::read(place.path(name)).unwrap());
+    let report: serde_json::Value = place.json("a.json");
+    let bytes = ["a.exr", "a.png"].map(|name| place.bytes(name));
     (bytes.into(), report["mean_samples_per_pixel"].as_f64().unwrap())
 }
 

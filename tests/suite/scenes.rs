@@ -14,8 +14,8 @@ use glossmith::{
 };
 
 use crate::{
+    cli_support::Workplace,
     fuzz_layer::fuzzy_on_a_box,
-    gltf_builder::Folder,
     gltf_meaning::shining_by_vertices,
     light_profiles::{LAMP, floor},
     lights::lit_scenes,
@@ -23,7 +23,7 @@ use crate::{
     parting::Pair,
     paths,
     paths::Scene,
-    renders::{document, material},
+    renders::{adjust, document, material},
     terminator::coarse,
     textures::{all_at_once, coated_all_over},
     thin_film::filmed_on_a_box,
@@ -64,7 +64,7 @@ const MATERIALS: [(&str, &str); 9] = [
 ];
 
 /// All scenes; their files lie in the folders.
-fn scenes(folders: &[Folder; 3]) -> Vec<Scene> {
+fn scenes(folders: &[Workplace; 3]) -> Vec<Scene> {
     let mut scenes = paths::scenes();
     let mut add = |name, document| {
         scenes.push(Scene {
@@ -127,7 +127,7 @@ fn scenes(folders: &[Folder; 3]) -> Vec<Scene> {
 
 /// Asks something of every scene in one session of the processor's.
 fn in_all(mut ask: impl FnMut(&mut Session, &Scene)) {
-    let folders = [Folder::new(), Folder::new(), Folder::new()];
+    let folders = [Workplace::new(), Workplace::new(), Workplace::new()];
     let mut session = Session::open_with(EngineChoice::Cpu, Assets::default()).unwrap();
     for scene in scenes(&folders) {
         if let Some(model) = &scene.model {
@@ -149,22 +149,22 @@ fn render(session: &mut Session, document: &Document, step: Duration) -> Film {
 /// most often in glass.
 #[test]
 fn engines_trace_the_same_paths() {
-    let folders = [Folder::new(), Folder::new(), Folder::new()];
+    let folders = [Workplace::new(), Workplace::new(), Workplace::new()];
     let mut pair = Pair::open();
     for scene in scenes(&folders) {
         pair.keep(&scene.document.model, scene.model.clone());
         let limits = match scene.name {
-            // One pixel of forty bounces is 2e-3 of the whole.
-            "room" => [5e-3, 3e-3],
-            "amber glass" | "rough glass" | "frosted" | "glass" | "amber" | "a picture on everything" => [0.02, 2e-3],
-            _ => [5e-3, 1e-3],
+            // One pixel of forty bounces is 0.002 of the whole.
+            "room" => [0.005, 0.003],
+            "amber glass" | "rough glass" | "frosted" | "glass" | "amber" | "a picture on everything" => [0.02, 0.002],
+            _ => [0.005, 0.001],
         };
         let mut document = scene.document;
         for strategy in Strategy::ALL {
             document.render.strategy = *strategy;
             pair.assert_same_paths(&document, limits, &format!("{}, {strategy:?}", scene.name));
         }
-        (document.render.sequence, document.render.firefly_clamp) = (Sequence::Sobol, Some(0.2));
+        adjust(&mut document, "render.sequence=sobol render.firefly_clamp=0.2");
         pair.assert_same_paths(&document, limits, &format!("{}, limited", scene.name));
     }
 }
@@ -254,154 +254,157 @@ fn the_same_bits_however_steps_are_cut_and_all_finite() {
 const WHITE: [(&str, f64); 49] = [
     (
         "base.metalness=0 specular.roughness=0.3 specular.fresnel=dielectric",
-        3e-3,
+        0.003,
     ),
-    ("specular.fresnel=none specular.roughness=0.5", 3e-3),
+    ("specular.fresnel=none specular.roughness=0.5", 0.003),
     (
         "specular.fresnel=none specular.roughness=1 specular.curve=long-tail",
-        3e-3,
+        0.003,
     ),
-    ("base.metalness=1 specular.lobe=ggx specular.roughness=0.2", 3e-3),
-    ("base.metalness=1 specular.lobe=ggx specular.roughness=0.9", 3e-3),
+    ("base.metalness=1 specular.lobe=ggx specular.roughness=0.2", 0.003),
+    ("base.metalness=1 specular.lobe=ggx specular.roughness=0.9", 0.003),
     (
         "base.metalness=0 specular.lobe=ggx specular.roughness=0.6 specular.fresnel=dielectric",
-        3e-3,
+        0.003,
     ),
-    ("base.metalness=0.5 specular.lobe=ggx specular.roughness=0.4", 5e-3),
-    ("base.metalness=0 specular.weight=0 base.diffuse_roughness=1", 3e-3),
+    ("base.metalness=0.5 specular.lobe=ggx specular.roughness=0.4", 0.005),
+    ("base.metalness=0 specular.weight=0 base.diffuse_roughness=1", 0.003),
     (
         "base.metalness=0 specular.roughness=0.3 base.diffuse_roughness=0.7",
-        3e-3,
+        0.003,
     ),
-    ("transmission.weight=1 specular.roughness=0", 3e-3),
-    ("transmission.weight=1 specular.roughness=0.3", 3e-3),
+    ("transmission.weight=1 specular.roughness=0", 0.003),
+    ("transmission.weight=1 specular.roughness=0.3", 0.003),
     (
         "transmission.weight=1 specular.roughness=0.4 specular.anisotropy=0.6",
-        5e-3,
+        0.005,
     ),
-    ("transmission.weight=1 specular.lobe=ggx specular.roughness=0.6", 5e-3),
-    ("transmission.weight=0.5 specular.roughness=0.6", 3e-3),
-    ("transmission.weight=1 specular.roughness=0.3 specular.weight=0.5", 3e-3),
-    ("base.metalness=0.5 transmission.weight=1 specular.roughness=0.3", 5e-3),
-    ("base.metalness=0 coat.weight=1 coat.roughness=0", 3e-3),
+    ("transmission.weight=1 specular.lobe=ggx specular.roughness=0.6", 0.005),
+    ("transmission.weight=0.5 specular.roughness=0.6", 0.003),
+    (
+        "transmission.weight=1 specular.roughness=0.3 specular.weight=0.5",
+        0.003,
+    ),
+    ("base.metalness=0.5 transmission.weight=1 specular.roughness=0.3", 0.005),
+    ("base.metalness=0 coat.weight=1 coat.roughness=0", 0.003),
     (
         "base.metalness=0 coat.weight=0.5 coat.roughness=0.5 specular.roughness=0.3",
-        3e-3,
+        0.003,
     ),
-    ("base.metalness=0 coat.weight=1 coat.lobe=ggx coat.roughness=0.5", 3e-3),
+    ("base.metalness=0 coat.weight=1 coat.lobe=ggx coat.roughness=0.5", 0.003),
     (
         "base.metalness=1 coat.weight=1 coat.ior=2.2 coat.roughness=0.8 specular.roughness=0.3",
-        4e-3,
+        0.004,
     ),
     (
         "transmission.weight=1 coat.weight=1 coat.roughness=0.2 specular.roughness=0.3",
-        4e-3,
+        0.004,
     ),
     (
         "base.metalness=0 fuzz.weight=1 fuzz.roughness=0.6 specular.weight=0",
-        4e-3,
+        0.004,
     ),
     (
         "base.metalness=0 fuzz.weight=1 fuzz.roughness=0 coat.weight=1 coat.roughness=0.3",
-        1e-2,
+        0.01,
     ),
     (
         "base.metalness=1 fuzz.weight=0.3 fuzz.roughness=0.6 specular.roughness=0.4",
-        4e-3,
+        0.004,
     ),
     (
         "base.metalness=0 specular.fresnel=dielectric thin_film.weight=1 thin_film.ior=2 specular.lobe=ggx",
-        3e-3,
+        0.003,
     ),
     (
         "base.metalness=1 thin_film.weight=0.5 thin_film.ior=2 thin_film.thickness=1 specular.roughness=0.2",
-        3e-3,
+        0.003,
     ),
     (
         "transmission.weight=1 thin_film.weight=1 thin_film.ior=1.33 thin_film.thickness=0.3 specular.roughness=0",
-        3e-3,
+        0.003,
     ),
     (
         "transmission.weight=1 thin_film.weight=1 thin_film.ior=2 specular.lobe=ggx specular.roughness=0.5",
-        5e-3,
+        0.005,
     ),
     (
         "base.metalness=0.5 specular.fresnel=dielectric thin_film.weight=1 thin_film.ior=1.4 specular.roughness=0.3",
-        3e-2,
+        0.03,
     ),
     (
         "base.metalness=0 coat.weight=0 fuzz.weight=0 thin_film.weight=0 specular.fresnel=dielectric",
-        3e-3,
+        0.003,
     ),
-    ("base.metalness=1 specular.lobe=ggx-2018 specular.roughness=0.8", 3e-3),
-    ("base.metalness=1 specular.lobe=ggx-ndf specular.roughness=0.5", 3e-3),
+    ("base.metalness=1 specular.lobe=ggx-2018 specular.roughness=0.8", 0.003),
+    ("base.metalness=1 specular.lobe=ggx-ndf specular.roughness=0.5", 0.003),
     (
         "transmission.weight=1 specular.ior=1 thin_film.weight=1 thin_film.thickness=0.45 thin_film.ior=1.33 specular.lobe=ggx specular.roughness=0.0",
-        1e-2,
+        0.01,
     ),
     (
         "transmission.weight=1 specular.ior=1 thin_film.weight=1 thin_film.thickness=0.45 thin_film.ior=1.33 specular.lobe=ggx-2018 specular.roughness=0.8",
-        1e-2,
+        0.01,
     ),
     (
         "transmission.weight=1 specular.ior=1 thin_film.weight=1 thin_film.thickness=0.45 thin_film.ior=1.33 specular.lobe=ggx-ndf specular.roughness=0.3",
-        1e-2,
+        0.01,
     ),
     (
         "transmission.weight=1 specular.ior=1 thin_film.weight=1 thin_film.thickness=0.45 thin_film.ior=1.33 specular.lobe=geometric specular.roughness=0.3",
-        1e-2,
+        0.01,
     ),
     (
         "transmission.weight=1 specular.ior=1 coat.weight=1 coat.ior=1.5 coat.roughness=0.2 specular.lobe=ggx specular.roughness=0.3",
-        1e-2,
+        0.01,
     ),
     (
         "transmission.weight=1 specular.ior=1 coat.weight=1 coat.ior=1.5 coat.roughness=0.2 specular.lobe=geometric specular.roughness=0.3",
-        1e-2,
+        0.01,
     ),
     (
         "base.metalness=1 specular.fresnel=none specular.roughness=0.7 specular.lobe=ggx specular.anisotropy=0.9 specular.rotation=0",
-        2e-2,
+        0.02,
     ),
     (
         "base.metalness=1 specular.fresnel=none specular.roughness=0.7 specular.lobe=ggx specular.anisotropy=0.9 specular.rotation=45",
-        2e-2,
+        0.02,
     ),
     (
         "base.metalness=1 specular.fresnel=none specular.roughness=0.7 specular.lobe=ggx specular.anisotropy=0.9 specular.rotation=70",
-        2e-2,
+        0.02,
     ),
     (
         "transmission.weight=1 specular.fresnel=dielectric specular.roughness=0.5 specular.lobe=ggx specular.anisotropy=0.9 specular.rotation=0",
-        2e-2,
+        0.02,
     ),
     (
         "transmission.weight=1 specular.fresnel=dielectric specular.roughness=0.5 specular.lobe=ggx specular.anisotropy=0.9 specular.rotation=45",
-        2e-2,
+        0.02,
     ),
     (
         "transmission.weight=1 specular.fresnel=dielectric specular.roughness=0.5 specular.lobe=ggx specular.anisotropy=0.9 specular.rotation=70",
-        2e-2,
+        0.02,
     ),
     (
         "base.metalness=0 specular.fresnel=dielectric specular.roughness=0.3 specular.lobe=ggx specular.anisotropy=0.9 specular.rotation=0",
-        2e-2,
+        0.02,
     ),
     (
         "base.metalness=0 specular.fresnel=dielectric specular.roughness=0.3 specular.lobe=ggx specular.anisotropy=0.9 specular.rotation=45",
-        2e-2,
+        0.02,
     ),
     (
         "base.metalness=0 specular.fresnel=dielectric specular.roughness=0.3 specular.lobe=ggx specular.anisotropy=0.9 specular.rotation=70",
-        2e-2,
+        0.02,
     ),
     (
         "transmission.weight=1 specular.fresnel=dielectric specular.lobe=ggx-2018 specular.roughness=0.6 specular.ior=2.5 specular.weight=0",
-        1e-2,
+        0.01,
     ),
     (
         "transmission.weight=1 specular.fresnel=dielectric specular.lobe=ggx-2018 specular.roughness=0.6 specular.ior=2.5 specular.weight=0.4",
-        1e-2,
+        0.01,
     ),
 ];
 
@@ -448,7 +451,7 @@ fn white_bodies_are_not_seen_in_even_light() {
         let all = [default, "base.color=1,1,1", stack];
         let model = [ModelSource::Sphere, ModelSource::Teapot][number % 2].clone();
         let mut document = document(model, EnvironmentSource::Furnace, &all);
-        (document.render.width, document.render.height, document.render.samples) = (24, 24, 64);
+        adjust(&mut document, "render.width=24 render.height=24 render.samples=64");
         let film = render(&mut session, &document, Duration::from_secs(10));
         let pixels = film.pixel_count();
         let mean = (0..pixels).map(|pixel| film.mean(pixel)[1]).sum::<f64>() / pixels as f64;

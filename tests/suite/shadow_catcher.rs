@@ -1,12 +1,11 @@
 //! Grounds: the shadow catcher is the background where nothing stands on it, its shadows and reflections have their true
 //! values, on both engines.
 
-use crate::renders::{assert_same_picture, document, render};
+use crate::renders::{adjust, assert_same_picture, document, render};
 use glam::DVec3;
 use glossmith::{
     document::{AreaLight, Background, Document, GroundKind, MaterialSettings},
     job::film::Film,
-    optics::random::Sequence,
     optics::vector::{Vec3, vec3},
     render::EngineChoice,
     scene::{
@@ -41,9 +40,10 @@ fn at_one_place(document: &mut Document, across: bool) {
     let away = if across { 4.0 } else { 0.0 };
     document.camera.position = Some([AWAY + away, 1.0, 4.0 - away]);
     document.camera.fov_deg = 0.1;
-    (document.render.width, document.render.height) = (8, 8);
-    document.render.samples = 2048;
-    document.render.sequence = Sequence::Sobol;
+    adjust(
+        document,
+        "render.width=8 render.height=8 render.samples=2048 render.sequence=sobol",
+    );
 }
 
 /// Red, green, blue and coverage, averaged over the picture.
@@ -57,7 +57,7 @@ fn mean(film: &Film) -> [f64; 4] {
 
 #[track_caller]
 fn assert_near(found: f64, expected: f64, tolerance: f64, what: &str) {
-    assert!((found - expected).abs() < tolerance, "{what}: {found}, not {expected}");
+    near!(found, expected, tolerance, "{what}");
 }
 
 /// The share of the light of a uniform environment that the sphere of radius 1 takes from the place: its form factor.
@@ -192,12 +192,9 @@ fn a_plane_under_a_uniform_environment_shows_its_radiance() {
     let table = catcher_table(&light, 0.0, 0.5);
     let found: Vec3<f64> = catcher_light(&table, 0, vec3(3.0, 0.0, -7.0));
     let expected = f64::from(environment.texels[0][0]) * 2.0;
-    assert!(
-        (found.x - expected).abs() < 1e-6 * expected,
-        "{found:?}, not {expected}"
-    );
-    assert!((catcher_reflectance(&table, 0, 1.0_f64) - 0.02).abs() < 1e-7);
-    assert!((catcher_reflectance(&table, 0, 0.0_f64) - 0.5).abs() < 1e-7);
+    near!(found.x, expected, 1e-6 * expected);
+    near!(catcher_reflectance(&table, 0, 1.0_f64), 0.02, 1e-7);
+    near!(catcher_reflectance(&table, 0, 0.0_f64), 0.5, 1e-7);
 }
 
 /// The light on a plane below one light of radiance 1, at places of a height.
@@ -237,7 +234,7 @@ fn a_spot_lights_what_its_cone_holds_and_a_sphere_from_its_near_side() {
     // 2.5 below it: tan 10°, tan 25° and tan 45° beside its target.
     let beside = |angle_deg: f64| 1.0 + 2.5 * angle_deg.to_radians().tan();
     let share = |angle_deg: f64| spot_at(beside(angle_deg), 0.0) / lamp_at(beside(angle_deg), 0.0);
-    assert!((share(10.0) - 1.0).abs() < 1e-3);
+    near!(share(10.0), 1.0, 0.001);
     assert!((0.1..0.5).contains(&share(25.0)), "{}", share(25.0));
     assert_eq!(spot_at(beside(45.0), 0.0), 0.0);
     // A sphere: the squared sine of half its angle.
@@ -277,10 +274,7 @@ fn tables_with_lights_are_near_the_true_light() {
             }
             let expected = sum * shape.width * shape.height / f64::from(STEPS * STEPS) / PI;
             let found = found_at(x, z);
-            assert!(
-                (found / expected - 1.0).abs() < 0.01,
-                "{pitch_deg}, {x}, {z}: {found}, not {expected}"
-            );
+            near!(found / expected, 1.0, 0.01, "{pitch_deg}, {x}, {z}");
         }
         assert!(found_at(40.0, 0.0) > 0.0);
     }

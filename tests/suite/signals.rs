@@ -72,7 +72,7 @@ fn a_signal_ends_a_render_with_what_there_is() {
         );
         let picture = read_exr(&place.path("a.exr"));
         assert!(picture.pixels.iter().any(|pixel| pixel[0] > 0.0), "{signal}: black");
-        let report: serde_json::Value = serde_json::from_str(&place.read("r.json")).unwrap();
+        let report: serde_json::Value = place.json("r.json");
         assert_eq!(report["stopped_by"], "signal");
         assert!(report["mean_samples_per_pixel"].as_f64().unwrap() > 0.0);
     }

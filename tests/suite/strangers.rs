@@ -1,6 +1,6 @@
 //! Files from strangers: what they may name, and what becomes of what they may not.
 
-use glossmith::{document::Document, scene::ModelSource, store::save_document};
+use glossmith::{document::Document, scene::ModelSource};
 use serde_json::{Value as Json, json};
 
 use super::{cli_support::Workplace, gltf_builder::glb, gltf_builder::png, textures::textured_square};
@@ -13,7 +13,7 @@ const QUICK: &str = "--engine cpu --size 8x8 --samples 1 --output a.exr";
 fn place(library: &str) -> Workplace {
     let place = Workplace::new();
     std::fs::create_dir_all(place.path("a/b")).unwrap();
-    place.write("a/b/m.obj", format!("mtllib {library}\n{TRIANGLE}").as_bytes());
+    place.write("a/b/m.obj", format!("mtllib {library}\n{TRIANGLE}"));
     place.write("far.mtl", FAR);
     place.write("a/near.mtl", FAR);
     place
@@ -24,7 +24,7 @@ fn entries(place: &Workplace, arguments: &str, fate: &str) -> String {
     place.done(&format!(
         "render a/b/m.obj {QUICK} --import-report report.json {arguments}"
     ));
-    let report: Json = serde_json::from_str(&place.read("report.json")).unwrap();
+    let report: Json = place.json("report.json");
     let entries = report["entries"].as_array().unwrap();
     let of_fate: Vec<&Json> = entries.iter().filter(|entry| entry["fate"] == fate).collect();
     json!(of_fate).to_string()
@@ -34,6 +34,7 @@ fn entries(place: &Workplace, arguments: &str, fate: &str) -> String {
 fn a_model_reads_its_surroundings_and_more_where_that_is_allowed() {
     let near = place("../near.mtl");
     assert_eq!(entries(&near, "", "missing"), "[]");
+    assert!(!entries(&near, "", "used").contains("files from outside"));
     let far = place("../../far.mtl");
     let absolute = place("far.mtl");
     let library = absolute.path("far.mtl");
@@ -57,17 +58,17 @@ fn a_model_reads_its_surroundings_and_more_where_that_is_allowed() {
 #[test]
 fn what_lies_elsewhere_is_not_in_an_export() {
     let place = place("../near.mtl");
-    place.write("far.png", &png());
+    place.write("far.png", png());
     let material = json!({"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}});
     let (buffer, mut document) = textured_square(&material, &[], &json!({}));
     document["images"] = json!([{"uri": "../../far.png"}]);
     document["textures"] = json!([{"source": 0}]);
-    place.write("a/b/m.glb", &glb(&document, &buffer.bytes));
+    place.write("a/b/m.glb", glb(&document, &buffer.bytes));
     // The pictures of the export, decoded.
     let pictures = |options: &str| -> Vec<image::RgbaImage> {
         place.done(&format!("convert a/b/m.glb out.gltf {options}"));
-        let json: Json = serde_json::from_str(&place.read("out.gltf")).unwrap();
-        let binary = std::fs::read(place.path("out.bin")).unwrap();
+        let json: Json = place.json("out.gltf");
+        let binary = place.bytes("out.bin");
         let images = json["images"].as_array().into_iter().flatten();
         let decoded = images.map(|entry| {
             let view = &json["bufferViews"][entry["bufferView"].as_u64().unwrap() as usize];
@@ -114,7 +115,7 @@ fn devices_and_pipes_are_told_and_not_waited_for() {
             "neither a .hdr",
         ),
     ] {
-        place.write(name, text.to_string().as_bytes());
+        place.write(name, text.to_string());
         place.refused(
             1,
             &format!("render {name} {QUICK} --allow-outside"),
@@ -134,16 +135,16 @@ fn a_project_names_what_its_maker_may_read() {
         ..Document::default()
     };
     // The user's own.
-    save_document(&place.path("a/b/own.json"), &document).unwrap();
+    place.save_document("a/b/own.json", &document);
     place.done(&render("own.json"));
     // From elsewhere: without the mark, or with one that was made for other names.
-    let mut text: Json = serde_json::from_str(&place.read("a/b/own.json")).unwrap();
+    let mut text: Json = place.json("a/b/own.json");
     assert_eq!(text["saved-by"].as_str().map(str::len), Some(32));
     std::fs::copy(&model, place.path("other.obj")).unwrap();
     text["model"] = json!(place.path("other.obj"));
-    place.write("a/b/forged.json", text.to_string().as_bytes());
+    place.write("a/b/forged.json", text.to_string());
     text["model"] = json!("../../far.obj");
-    place.write("a/b/upwards.json", text.to_string().as_bytes());
+    place.write("a/b/upwards.json", text.to_string());
     for name in ["forged.json", "upwards.json"] {
         place.refused(
             1,
@@ -154,10 +155,10 @@ fn a_project_names_what_its_maker_may_read() {
     }
     // What stays in its folder has no mark: the file is the same whoever saves it.
     let inside = Document {
-        model: ModelSource::File(place.path("a/b/m.obj")),
+        model: place.model("a/b/m.obj"),
         ..Document::default()
     };
-    save_document(&place.path("a/b/inside.json"), &inside).unwrap();
+    place.save_document("a/b/inside.json", &inside);
     assert!(!place.read("a/b/inside.json").contains("saved-by"));
     place.done(&render("inside.json"));
 }

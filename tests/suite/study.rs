@@ -1,6 +1,6 @@
 //! Studies: the race and the ledger, in numbers small enough for a test.
 
-use super::cli_support::Workplace;
+use super::{cli_support::Workplace, renders::adjust};
 use glossmith::{
     document::{Document, MaterialSettings},
     optics::{fresnel::Fresnel, lobe::Lobe},
@@ -20,7 +20,7 @@ fn sphere(side: u32) -> Document {
         model: ModelSource::Sphere,
         ..Document::default()
     };
-    (document.render.width, document.render.height) = (side, side);
+    adjust(&mut document, &format!("render.width={side} render.height={side}"));
     document
 }
 
@@ -194,7 +194,7 @@ fn the_ledger_tells_what_is_known_of_a_scene() {
 }
 
 fn json(workplace: &Workplace, name: &str) -> Value {
-    serde_json::from_str(&workplace.read(name)).unwrap()
+    workplace.json(name)
 }
 
 fn number(value: &Value, key: &str) -> f64 {
@@ -207,7 +207,7 @@ fn has_plots(workplace: &Workplace, folder: &str, names: &[&str]) {
     for name in names {
         let svg = workplace.read(&format!("{folder}/{name}.svg"));
         assert!(svg.starts_with("<svg"), "{name}");
-        let picture = image::open(workplace.path(&format!("{folder}/{name}.png"))).unwrap();
+        let picture = image::open(workplace.path(format!("{folder}/{name}.png"))).unwrap();
         assert!(picture.width() > 400 && picture.height() > 100, "{name}");
     }
 }
@@ -245,7 +245,7 @@ fn accuracy_writes_the_race() {
     has_plots(&workplace, "found", &["accuracy"]);
     for sheet in ["equal-time", "equal-error"] {
         assert!(
-            image::open(workplace.path(&format!("found/{sheet}.png")))
+            image::open(workplace.path(format!("found/{sheet}.png")))
                 .unwrap()
                 .width()
                 >= 400,

@@ -79,7 +79,7 @@ fn exact_and_approximate_fresnel_agree_along_the_normal() {
             assert_eq!(exact.fresnel, Fresnel::Conductor);
             let back = apply("fresnel=schlick", &exact);
             assert!(
-                back.base_color.iter().all(|found| (found - f0).abs() < 1e-4),
+                back.base_color.iter().all(|found| (found - f0).abs() < 0.0001),
                 "{f0} {eta}: {back:?}"
             );
         }

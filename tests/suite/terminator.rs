@@ -9,14 +9,15 @@ use glossmith::{
 use serde_json::json;
 
 use super::{
-    gltf_builder::{Buffer, Folder},
+    cli_support::Workplace,
+    gltf_builder::Buffer,
     plan::job,
     random_documents::of_material,
     renders::{document, render},
 };
 
 /// The file of a mesh with its normals.
-fn file(folder: &Folder, name: &str, mesh: &Mesh) -> ModelSource {
+fn file(folder: &Workplace, name: &str, mesh: &Mesh) -> ModelSource {
     let mut buffer = Buffer::default();
     let primitive = buffer.mesh(mesh);
     let json = buffer.document(json!([primitive]));
@@ -24,7 +25,7 @@ fn file(folder: &Folder, name: &str, mesh: &Mesh) -> ModelSource {
 }
 
 /// A coarse ball of matt 0.8 in a studio.
-pub fn coarse(folder: &Folder) -> Document {
+pub fn coarse(folder: &Workplace) -> Document {
     Document {
         materials: vec![MaterialSettings::diffuse("ball", [0.8; 3])],
         model: file(folder, "coarse.glb", &shapes::sphere(12, 6)),
@@ -42,7 +43,7 @@ fn ball(model: ModelSource) -> Document {
 
 #[test]
 fn only_coarse_smooth_triangles_call_for_the_round_surface() {
-    let folder = Folder::new();
+    let folder = Workplace::new();
     let calls = |model: ModelSource| {
         let document = of_material(model, MaterialSettings::default());
         job(&document).plan.has(EffectId::ShadowTerminator)
@@ -71,7 +72,7 @@ fn only_coarse_smooth_triangles_call_for_the_round_surface() {
 /// Of light that comes evenly from everywhere a ball returns its albedo, coarse or not, alone or beside something else.
 #[test]
 fn the_round_surface_keeps_the_furnace() {
-    let folder = Folder::new();
+    let folder = Workplace::new();
     let model = file(&folder, "ball.glb", &shapes::sphere(12, 6));
     let mut alone = ball(model);
     let mut beside = alone.clone();

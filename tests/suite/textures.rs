@@ -2,8 +2,8 @@
 
 use glossmith::{
     compile::compile_textured,
-    document::{AreaLight, Background, Document, ImportLobe, MaterialSettings, PixelFilter},
-    optics::{random::Sequence, tone::linear_from_srgb, vector::Vec3},
+    document::{AreaLight, Background, Document, ImportLobe, MaterialSettings},
+    optics::{tone::linear_from_srgb, vector::Vec3},
     render::EngineChoice,
     scene::{
         Model, ModelSource,
@@ -15,9 +15,10 @@ use image::{Rgba, RgbaImage};
 use serde_json::{Value, json};
 
 use super::{
-    gltf_builder::{Buffer, Folder, glb, square},
+    cli_support::Workplace,
+    gltf_builder::{Buffer, glb, square},
     gltf_extensions::load_plain,
-    renders::render,
+    renders::{adjust, render},
 };
 
 const ENGINES: [EngineChoice; 2] = [EngineChoice::Cpu, EngineChoice::Gpu];
@@ -51,7 +52,7 @@ pub fn textured_square(material: &Value, pictures: &[RgbaImage], sampler: &Value
     (buffer, document)
 }
 
-pub(super) fn load(material: &Value, pictures: &[RgbaImage], sampler: &Value) -> Model {
+pub fn load(material: &Value, pictures: &[RgbaImage], sampler: &Value) -> Model {
     let (buffer, document) = textured_square(material, pictures, sampler);
     load_plain(&document, &buffer)
 }
@@ -94,7 +95,7 @@ fn base_color(sampler: &Value, extension: &Value, uv: [f64; 2], is_srgb: bool) -
 #[track_caller]
 fn assert_near(found: [f64; 4], expected: [f64; 4]) {
     for (a, b) in found.iter().zip(expected) {
-        assert!((a - b).abs() < 1e-6, "{found:?}, expected {expected:?}");
+        near!(a, b, 1e-6, "{found:?}, expected {expected:?}");
     }
 }
 
@@ -138,10 +139,7 @@ fn textures_go_on_beyond_their_edges_as_the_sampler_says() {
         (CLAMP, 0.5, 0.5 * red),
     ] {
         let found = of(wrap, [u, 0.0]);
-        assert!(
-            (found - expected).abs() < 1e-5,
-            "wrap {wrap} at {u}: {found}, expected {expected}"
-        );
+        near!(found, expected, 1e-5, "wrap {wrap} at {u}");
     }
     let nearest = json!({"magFilter": NEAREST, "wrapS": CLAMP, "wrapT": CLAMP});
     for (u, expected) in [(0.0, 0.0), (0.49, 0.0), (0.51, red), (1.0, red)] {
@@ -186,13 +184,12 @@ fn a_material_may_look_up_two_sets_of_coordinates() {
             .x
             < 1e-6
     );
-    assert!(
-        (texture_lookup::<f64>(&textures, slot.record(TextureTarget::Emission), uvs)
+    near!(
+        texture_lookup::<f64>(&textures, slot.record(TextureTarget::Emission), uvs)
             .0
-            .x
-            - linear(100))
-        .abs()
-            < 1e-6
+            .x,
+        linear(100),
+        1e-6
     );
     assert!(model.report.is_clean(), "{:?}", model.report);
 }
@@ -211,7 +208,7 @@ fn a_mask_without_a_cutoff_cuts_at_a_half() {
 }
 
 /// The square seen head-on, filling the picture.
-pub fn head_on(folder: &Folder, buffer: &Buffer, json: &Value, light: EnvironmentSource) -> Document {
+pub fn head_on(folder: &Workplace, buffer: &Buffer, json: &Value, light: EnvironmentSource) -> Document {
     let path = folder.path("square.glb");
     std::fs::write(&path, glb(json, &buffer.bytes)).unwrap();
     let model = glossmith::import::load(&ModelSource::File(path.clone())).unwrap();
@@ -225,11 +222,10 @@ pub fn head_on(folder: &Folder, buffer: &Buffer, json: &Value, light: Environmen
         ..Document::default()
     };
     document.lighting.environment = light;
-    document.render.width = 32;
-    document.render.height = 32;
-    document.render.samples = 64;
-    document.render.filter = PixelFilter::Box;
-    document.render.sequence = Sequence::Independent;
+    adjust(
+        &mut document,
+        "render.width=32 render.height=32 render.samples=64 render.filter=box render.sequence=independent",
+    );
     // Unit square: half of it over the distance is the half angle's tangent.
     (document.camera.yaw_deg, document.camera.pitch_deg) = (0.0, 0.0);
     document.camera.distance = Some(10.0);
@@ -244,12 +240,12 @@ fn a_texture_lies_upright_on_the_square() {
         "pbrMetallicRoughness": {"baseColorFactor": [0, 0, 0, 1], "roughnessFactor": 1}});
     let (buffer, json) = textured_square(&material, &[four_texels()], &json!({"magFilter": NEAREST}));
     for choice in ENGINES {
-        let folder = Folder::new();
+        let folder = Workplace::new();
         let mut document = head_on(&folder, &buffer, &json, EnvironmentSource::Furnace);
         document.lighting.strength = 0.0;
         let image = render(choice, &document).image();
         let at = |x: usize, y: usize| image.pixels[y * 32 + x];
-        let near = |a: f32, b: f64| (f64::from(a) - b).abs() < 2e-3;
+        let near = |a: f32, b: f64| (f64::from(a) - b).abs() < 0.002;
         assert!(
             near(at(8, 8)[0], 0.0) && near(at(24, 8)[0], linear(100)),
             "{choice:?} {:?}",
@@ -280,7 +276,7 @@ fn weights_follow_their_textures() {
         let material = json!({"extensions": extensions,
             "pbrMetallicRoughness": {"baseColorFactor": [base, base, base, 1], "metallicFactor": 0, "roughnessFactor": 0}});
         let (buffer, json) = textured_square(&material, std::slice::from_ref(&halves), &json!({"magFilter": NEAREST}));
-        let folder = Folder::new();
+        let folder = Workplace::new();
         let mut document = head_on(&folder, &buffer, &json, EnvironmentSource::Furnace);
         document.lighting.strength = *light;
         document.lighting.area_lights = vec![AreaLight {
@@ -294,7 +290,7 @@ fn weights_follow_their_textures() {
         let pixels = render(choice, &document).image().pixels;
         let [left, right] = [6, 26].map(|column| pixels[16 * 32 + column][0]);
         assert!(
-            left < 1e-3 && (right - expected).abs() < 0.02,
+            left < 0.001 && (right - expected).abs() < 0.02,
             "{choice:?} {extensions}: {left}, {right}"
         );
     }
@@ -312,7 +308,7 @@ fn alpha_is_a_share_or_a_cut() {
     for choice in ENGINES {
         for (mode, cutoff) in [("BLEND", 0.5), ("MASK", 0.3), ("OPAQUE", 0.5)] {
             let (buffer, json) = textured_square(&shine(mode, cutoff), &[four_texels()], &nearest);
-            let folder = Folder::new();
+            let folder = Workplace::new();
             let mut document = head_on(&folder, &buffer, &json, EnvironmentSource::Furnace);
             document.lighting.background = Background::Transparent;
             document.render.bounces = 1;
@@ -331,14 +327,8 @@ fn alpha_is_a_share_or_a_cut() {
                     .fold([0.0; 2], |sum, c| [sum[0] + c[0], sum[1] + c[3]]);
                 let [emitted, alpha] = sums.map(|sum| sum / (64.0 * 64.0));
                 // 4096 samples.
-                assert!(
-                    (alpha - expected).abs() < 0.04,
-                    "{choice:?} {mode} {quarter}: {alpha}, {expected}"
-                );
-                assert!(
-                    (emitted - expected).abs() < 0.04,
-                    "{choice:?} {mode} {quarter}: {emitted}, {expected}"
-                );
+                near!(alpha, expected, 0.04, "{choice:?} {mode} {quarter}");
+                near!(emitted, expected, 0.04, "{choice:?} {mode} {quarter}");
             }
         }
     }
@@ -358,7 +348,7 @@ fn rough() -> RgbaImage {
 }
 
 /// A square of this material, with pictures of bumps, of roughness and of colours, seen from aside.
-fn all_over(folder: &Folder, material: &Value) -> Document {
+fn all_over(folder: &Workplace, material: &Value) -> Document {
     let (buffer, json) = textured_square(material, &[bumps(), rough(), four_texels()], &json!({}));
     let mut document = head_on(folder, &buffer, &json, EnvironmentSource::Studio);
     (document.camera.yaw_deg, document.camera.pitch_deg) = (30.0, 25.0);
@@ -367,7 +357,7 @@ fn all_over(folder: &Folder, material: &Value) -> Document {
 }
 
 /// Everything at once: both engines and all strategies.
-pub(super) fn all_at_once(folder: &Folder) -> Document {
+pub fn all_at_once(folder: &Workplace) -> Document {
     let material = json!({
         "normalTexture": {"index": 0, "scale": 0.7},
         "alphaMode": "MASK", "alphaCutoff": 0.4, "emissiveFactor": [0.3, 0.2, 0.1],
@@ -382,7 +372,7 @@ pub(super) fn all_at_once(folder: &Folder) -> Document {
 }
 
 /// A coat with textures of its weight, roughness and normal over a flat, coloured base.
-pub(super) fn coated_all_over(folder: &Folder) -> Document {
+pub fn coated_all_over(folder: &Workplace) -> Document {
     let material = json!({
         "pbrMetallicRoughness": {"metallicFactor": 0, "roughnessFactor": 0.5, "baseColorFactor": [0.6, 0.3, 0.1, 1]},
         "extensions": {"KHR_materials_clearcoat": {

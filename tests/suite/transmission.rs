@@ -7,7 +7,7 @@ use glossmith::{
     scene::{ModelSource, environment::EnvironmentSource},
 };
 
-use super::renders::{document, render};
+use super::renders::{adjust, document, render};
 
 const ENGINES: [EngineChoice; 2] = [EngineChoice::Cpu, EngineChoice::Gpu];
 
@@ -33,21 +33,20 @@ fn light_cut_at_the_last_bounce_is_told() {
             let white = ["base.color=1,1,1", weight];
             let mut document = glass(EnvironmentSource::Furnace, &white);
             document.lighting.background = Background::Environment;
-            (document.render.width, document.render.height) = (32, 32);
-            document.render.bounces = bounces;
+            adjust(
+                &mut document,
+                &format!("render.width=32 render.height=32 render.bounces={bounces}"),
+            );
             let film = render(choice, &document);
             let [value, ..] = mean(&film);
             (1.0 - value, film.cut_share())
         };
         let (missing, estimate) = cut(3, "transmission.weight=0.5");
         assert!(missing > 0.02, "{choice:?}: {missing}");
-        assert!(
-            (estimate - missing).abs() < 1e-3,
-            "{choice:?}: {estimate} estimate, {missing} missing"
-        );
+        near!(estimate, missing, 0.001, "{choice:?}");
         let (missing, estimate) = cut(64, "transmission.weight=1");
         assert!(
-            missing.abs() < 1e-3 && estimate < 1e-3,
+            missing.abs() < 0.001 && estimate < 0.001,
             "{choice:?}: {estimate} estimate, {missing} missing"
         );
     }
@@ -60,7 +59,7 @@ fn no_albedo_is_gambled_for_behind_clear_glass() {
     let mut document = glass(EnvironmentSource::Furnace, &["specular.ior=1"]);
     document.ground = true;
     document.lighting.ground_color = [0.3, 0.2, 0.1];
-    (document.render.width, document.render.height, document.render.samples) = (32, 32, 8);
+    adjust(&mut document, "render.width=32 render.height=32 render.samples=8");
     for choice in ENGINES {
         let mut without = document.clone();
         without.materials[0].transmission_weight = 0.0;

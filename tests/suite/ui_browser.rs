@@ -13,9 +13,9 @@ use glossmith::{
 };
 
 use super::{
-    cli_support::write_hdr,
-    ui::{Editor, Memory, editor_of, editor_remembering, options, request, see, settle, undo, wait},
-    ui_hands::{Hands as _, type_path},
+    cli_support::{Workplace, write_hdr},
+    renders::{adjust, material},
+    ui::{Editor, Memory, editor_of, editor_remembering, options},
 };
 
 fn has(harness: &Editor, label: &str) -> bool {
@@ -68,6 +68,7 @@ fn presets_are_found_by_their_look() {
         search(&mut harness, words);
         assert!(has(&harness, found) && !has(&harness, other), "{words}");
     }
+    assert!(!material("base.metalness=0.5").look_words().contains(&"metal"));
     // Names before groups.
     search(&mut harness, "car paint");
     let first = place(&harness, "Car paint red").min;
@@ -79,14 +80,14 @@ fn presets_are_found_by_their_look() {
 #[test]
 fn a_preset_shows_where_it_is_used_and_replaces_a_material_everywhere() {
     let mut document = still_life();
-    (document.render.width, document.render.height, document.render.samples) = (48, 32, 1);
+    adjust(&mut document, "render.width=48 render.height=32 render.samples=1");
     document.materials[2] = document.materials[0].clone();
     let name = document.materials[0].name.clone();
     let mut harness = editor_of(Options {
         document: Some(document.clone()),
         ..options()
     });
-    settle(&mut harness);
+    harness.settle();
     click(&mut harness, "More of Ruby glass");
     assert!(
         harness
@@ -95,7 +96,7 @@ fn a_preset_shows_where_it_is_used_and_replaces_a_material_everywhere() {
             .is_disabled()
     );
     click(&mut harness, &format!("Replace on all that use {name} (2)"));
-    settle(&mut harness);
+    harness.settle();
     let materials = harness.document().materials.clone();
     for (slot, (now, before)) in std::iter::zip(&materials, &document.materials).enumerate() {
         match slot {
@@ -103,13 +104,13 @@ fn a_preset_shows_where_it_is_used_and_replaces_a_material_everywhere() {
             _ => assert_eq!(now, before, "slot {slot}"),
         }
     }
-    undo(&mut harness);
+    harness.undo();
     assert_eq!(harness.document().materials, document.materials);
     let redo = Action::Do(Command::Redo);
-    request(&mut harness, redo);
-    settle(&mut harness);
+    harness.request(redo);
+    harness.settle();
     let last = materials.len() - 1;
-    request(&mut harness, Action::SelectSlot(last));
+    harness.request(Action::SelectSlot(last));
     click(&mut harness, "More of Ruby glass");
     click(&mut harness, "Show where it is used (2)");
     assert!(harness.has("2 materials are edited together."));
@@ -118,50 +119,48 @@ fn a_preset_shows_where_it_is_used_and_replaces_a_material_everywhere() {
 /// Chooses a folder by the path field.
 fn watch(harness: &mut Editor, folder: &Path) {
     harness.command(Command::WatchFolder);
-    type_path(harness, folder, "Watch");
+    harness.type_path(folder, "Watch");
 }
 
 #[test]
 fn folders_are_watched_for_materials_and_environments() {
-    let place = tempfile::tempdir().expect("a folder");
-    let folder = place.path().join("collected");
+    let place = Workplace::new();
+    let folder = place.path("collected");
     std::fs::create_dir_all(folder.join("metals")).expect("made");
     let mut own = PRESETS[3].clone();
     own.name = "Zinc".to_owned();
     save_material(&folder.join("metals/zinc.json"), &own).expect("saved");
+    save_material(&folder.join(".tin.json"), &own).expect("saved");
     write_hdr(&folder.join("dusk.hdr"), 128, 64, |x, _| [x as f32 / 128.0, 0.2, 0.1]);
     let mut harness = editor_of(Options {
-        typed_paths: Some(place.path().to_owned()),
+        typed_paths: Some(place.root().to_owned()),
         ..options()
     });
     harness.run_steps(3);
     watch(&mut harness, &folder);
     let zinc = "Zinc (collected/metals/zinc.json)";
-    see(&mut harness, "the material", |harness| has(harness, zinc));
+    harness.see("the material", |harness| has(harness, zinc));
+    assert!(!has(&harness, "Zinc (collected/.tin.json)"), "what is hidden stays so");
     click(&mut harness, zinc);
-    assert_eq!(harness.document().materials[0], own);
+    assert_eq!(*harness.material(), own);
     let dusk = "dusk.hdr (collected/dusk.hdr)";
     search(&mut harness, "dusk");
     assert!(has(&harness, dusk) && !has(&harness, zinc));
     click(&mut harness, dusk);
     let source = EnvironmentSource::File(folder.join("dusk.hdr"));
-    wait(&mut harness, "the environment", |app| {
-        app.document().lighting.environment == source
-    });
+    harness.wait("the environment", |app| app.document().lighting.environment == source);
     // What comes later is found.
     search(&mut harness, "");
     own.name = "Tin".to_owned();
     save_material(&folder.join("tin.json"), &own).expect("saved");
-    see(&mut harness, "the new one", |harness| {
-        has(harness, "Tin (collected/tin.json)")
-    });
+    harness.see("the new one", |harness| has(harness, "Tin (collected/tin.json)"));
     click(&mut harness, "Stop watching collected");
     assert!(!has(&harness, zinc));
     // And one that goes is told of.
     watch(&mut harness, &folder);
-    see(&mut harness, "the material", |harness| has(harness, zinc));
+    harness.see("the material", |harness| has(harness, zinc));
     std::fs::remove_dir_all(&folder).expect("removed");
-    see(&mut harness, "what is wrong", |harness| {
+    harness.see("what is wrong", |harness| {
         harness.query_by_label_contains("can't be read").is_some()
     });
 }

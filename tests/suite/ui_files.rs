@@ -12,10 +12,9 @@ use glossmith::{
 use serde_json::json;
 
 use super::{
-    cli_support::write_hdr,
-    gltf_builder::{Folder, glb, png, square},
-    ui::{Editor, editor, editor_with, picture, request, see, see_label, settle, undo, wait},
-    ui_hands::Hands as _,
+    cli_support::{Workplace, write_hdr},
+    gltf_builder::{glb, png, square},
+    ui::{Editor, editor, editor_with, picture},
     worker::small_document,
 };
 
@@ -31,24 +30,20 @@ impl egui::DroppedFile for Dropped {
     }
 }
 
-/// Drops files on the window as the system does: all in one frame.
-pub(super) fn drop_on(harness: &mut Editor, paths: &[PathBuf]) {
-    let files = paths
-        .iter()
-        .map(|path| Arc::new(Dropped(path.clone())) as egui::DroppedFileHandle);
-    harness.input_mut().dropped_files = files.collect();
-    harness.step();
-    harness.step();
+impl Editor {
+    /// Drops files on the window as the system does: all in one frame.
+    pub fn drop_on(&mut self, paths: &[PathBuf]) {
+        let files = paths
+            .iter()
+            .map(|path| Arc::new(Dropped(path.clone())) as egui::DroppedFileHandle);
+        self.input_mut().dropped_files = files.collect();
+        self.step();
+        self.step();
+    }
 }
 
-pub(super) fn says(harness: &Editor, part: &str) -> bool {
+pub fn says(harness: &Editor, part: &str) -> bool {
     harness.state().messages().iter().any(|text| text.contains(part))
-}
-
-pub(super) fn wait_for_words(harness: &mut Editor, part: &str) {
-    wait(harness, part, |app| {
-        app.messages().iter().any(|text| text.contains(part))
-    });
 }
 
 fn write_square(path: &Path, material: &serde_json::Value) {
@@ -64,31 +59,27 @@ fn write_png(path: &Path) {
 
 #[test]
 fn every_kind_of_file_can_be_dropped() {
-    let folder = Folder::new();
+    let folder = Workplace::new();
     let mut harness = editor();
     let model = folder.path("square.glb");
     write_square(&model, &json!({"name": "Wood"}));
-    drop_on(&mut harness, std::slice::from_ref(&model));
-    wait(&mut harness, "the model", |app| {
+    harness.drop_on(std::slice::from_ref(&model));
+    harness.wait("the model", |app| {
         app.document().model == ModelSource::File(model.clone())
     });
 
     let light = folder.path("light.hdr");
     write_hdr(&light, 8, 4, |_, _| [1.0, 2.0, 3.0]);
-    drop_on(&mut harness, std::slice::from_ref(&light));
+    harness.drop_on(std::slice::from_ref(&light));
     let of_light = EnvironmentSource::File(light);
-    wait(&mut harness, "the environment", |app| {
-        app.document().lighting.environment == of_light
-    });
+    harness.wait("the environment", |app| app.document().lighting.environment == of_light);
 
-    let mut material = harness.document().materials[0].clone();
+    let mut material = harness.material().clone();
     (material.name, material.roughness) = ("Dropped".to_owned(), 0.77);
     let file = folder.path("dropped.json");
     save_material(&file, &material).unwrap();
-    drop_on(&mut harness, &[file]);
-    wait(&mut harness, "the material", |app| {
-        app.document().materials[0].name == "Dropped"
-    });
+    harness.drop_on(&[file]);
+    harness.wait("the material", |app| app.document().materials[0].name == "Dropped");
 
     // Pictures are for the selected material.
     for name in ["wood.png", "wood.webp"] {
@@ -101,8 +92,8 @@ fn every_kind_of_file_can_be_dropped() {
         .unwrap()
         .save(&wood)
         .unwrap();
-        drop_on(&mut harness, std::slice::from_ref(&wood));
-        wait(&mut harness, name, |app| {
+        harness.drop_on(std::slice::from_ref(&wood));
+        harness.wait(name, |app| {
             let own = app.document().materials[0].user_textures.get(TextureTarget::BaseColor);
             own.is_some_and(|own| own.file == wood)
         });
@@ -112,76 +103,76 @@ fn every_kind_of_file_can_be_dropped() {
     document.render.samples = 2;
     let project = folder.path("project.json");
     save_document(&project, &document).unwrap();
-    drop_on(&mut harness, &[project]);
+    harness.drop_on(&[project]);
     // The document has unsaved edits: it is asked for first.
-    see_label(&mut harness, "Discard");
+    harness.see_label("Discard");
     harness.get_by_role_and_label(Role::Button, "Discard").click_accesskit();
-    wait(&mut harness, "the project", |app| app.document().render.samples == 2);
+    harness.wait("the project", |app| app.document().render.samples == 2);
 
     let other = folder.path("notes.txt");
     std::fs::write(&other, "nothing").unwrap();
-    drop_on(&mut harness, &[other]);
-    wait_for_words(&mut harness, "notes.txt: not a kind of file that can be opened");
+    harness.drop_on(&[other]);
+    harness.wait_for_words("notes.txt: not a kind of file that can be opened");
     let part = folder.path("square.bin");
     std::fs::write(&part, "bytes").unwrap();
-    drop_on(&mut harness, &[part]);
-    wait_for_words(&mut harness, "square.bin: part of a model");
+    harness.drop_on(&[part]);
+    harness.wait_for_words("square.bin: part of a model");
 }
 
 #[test]
 fn what_another_program_saves_is_read_again_and_edits_stay() {
-    let folder = Folder::new();
+    let folder = Workplace::new();
     let path = folder.path("square.glb");
     let red = |roughness: f32| json!({"name": "Red", "pbrMetallicRoughness": {"baseColorFactor": [0.8, 0.1, 0.1, 1.0], "roughnessFactor": roughness}});
     write_square(&path, &red(0.9));
     let mut document = small_document();
     (document.camera.yaw_deg, document.camera.pitch_deg) = (10.0, 5.0);
     let mut harness = editor_with(document, vec![path.clone()]);
-    settle(&mut harness);
+    harness.settle();
     let (before, camera) = (picture(&harness), harness.document().camera);
 
     // Another colour: nothing was edited, the material follows its file, the view stays.
     let mut green = red(0.9);
     green["pbrMetallicRoughness"]["baseColorFactor"] = json!([0.1, 0.8, 0.1, 1.0]);
     write_square(&path, &green);
-    wait_for_words(&mut harness, "read square again");
-    wait(&mut harness, "the file's colour", |app| {
+    harness.wait_for_words("read square again");
+    harness.wait("the file's colour", |app| {
         app.document().materials[0].base_color[1] > 0.5
     });
-    settle(&mut harness);
+    harness.settle();
     assert!(picture(&harness) != before);
     assert_eq!(harness.document().camera, camera);
 
     // What was edited here stays as it is.
     harness.set("Specular roughness", 0.123);
-    settle(&mut harness);
-    let edited = harness.document().materials[0].clone();
+    harness.settle();
+    let edited = harness.material().clone();
     let model = |harness: &Editor| {
         let scene = harness.state().snapshot().scene.clone();
         scene.map(|scene| Arc::as_ptr(&scene.model).addr())
     };
     let before = model(&harness);
     write_square(&path, &red(0.2));
-    see(&mut harness, "the second time", |harness| model(harness) != before);
-    settle(&mut harness);
-    assert_eq!(harness.document().materials[0], edited);
+    harness.see("the second time", |harness| model(harness) != before);
+    harness.settle();
+    assert_eq!(*harness.material(), edited);
 
     // A file that is half written changes nothing but is told.
     let whole = std::fs::read(&path).unwrap();
     let document = harness.document().clone();
     std::fs::write(&path, &whole[..whole.len() / 2]).unwrap();
-    wait_for_words(&mut harness, "cut short");
+    harness.wait_for_words("cut short");
     assert_eq!(*harness.document(), document);
-    settle(&mut harness);
-    undo(&mut harness);
-    assert!(harness.document().materials[0] != edited);
+    harness.settle();
+    harness.undo();
+    assert_ne!(*harness.material(), edited);
 }
 
 #[test]
 fn damaged_files_are_named_and_change_nothing() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
+    let folder = Workplace::new();
     let write = |name: &str, bytes: &[u8]| {
-        let path = folder.path().join(name);
+        let path = folder.path(name);
         std::fs::write(&path, bytes).expect("a temporary file");
         path
     };
@@ -197,11 +188,11 @@ fn damaged_files_are_named_and_change_nothing() {
     let mut harness = editor();
     let (document, before) = (harness.document().clone(), picture(&harness));
     for path in files {
-        request(&mut harness, Action::Open(path.clone()));
+        harness.request(Action::Open(path.clone()));
         let name = path.display().to_string();
-        wait_for_words(&mut harness, &name);
+        harness.wait_for_words(&name);
     }
-    settle(&mut harness);
+    harness.settle();
     assert_eq!(*harness.document(), document);
     assert_eq!(picture(&harness), before);
 }

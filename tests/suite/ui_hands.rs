@@ -1,56 +1,44 @@
 //! What hands do and eyes see in many tests of the window.
 
-use std::path::Path;
+use std::{path::Path, time::Duration, time::Instant};
 
-use egui::{Event, Modifiers, PointerButton, Rect, accesskit::Role};
+use egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, Vec2, accesskit::Role};
 use egui_kittest::kittest::Queryable as _;
 use glossmith::{
-    app::actions::{Action, Command},
-    app::layout::Pane,
-    document::Document,
+    app::{App, actions::Action, actions::Command, layout::Pane},
+    document::{Document, MaterialSettings},
 };
 
-use super::ui::{Editor, request, see};
+use super::ui::{Editor, PATIENCE, assert_same_controls, controls};
 
-pub(super) trait Hands {
-    fn document(&self) -> &Document;
-    /// Whether a control or text has this label.
-    fn has(&self, label: &str) -> bool;
-    /// Brings a panel to the front.
-    fn reveal(&mut self, pane: Pane);
-    /// Clicks with the mouse.
-    fn click(&mut self, role: Role, label: &str);
-    /// Clicks with the mouse where something is.
-    fn click_on(&mut self, place: impl Fn(&Editor) -> Rect);
-    /// Clicks as a screen reader does, also what is covered or scrolled away.
-    fn tap(&mut self, role: Role, label: &str);
-    fn tap_label(&mut self, label: &str);
-    /// Sets a number.
-    fn set(&mut self, label: &str, value: f64);
-    /// Writes into a field.
-    fn write(&mut self, label: &str, text: &str);
-    fn command(&mut self, command: Command);
-}
-
-impl Hands for Editor {
-    fn document(&self) -> &Document {
+impl Editor {
+    pub fn document(&self) -> &Document {
         self.state().document()
     }
 
-    fn has(&self, label: &str) -> bool {
+    /// The first one.
+    pub fn material(&self) -> &MaterialSettings {
+        &self.document().materials[0]
+    }
+
+    /// Whether a control or text has this label.
+    pub fn has(&self, label: &str) -> bool {
         self.query_by_label(label).is_some()
     }
 
-    fn reveal(&mut self, pane: Pane) {
+    /// Brings a panel to the front.
+    pub fn reveal(&mut self, pane: Pane) {
         self.state_mut().reveal(pane);
         self.run_steps(4);
     }
 
-    fn click(&mut self, role: Role, label: &str) {
+    /// Clicks with the mouse.
+    pub fn click(&mut self, role: Role, label: &str) {
         self.click_on(|harness| harness.get_by_role_and_label(role, label).rect());
     }
 
-    fn click_on(&mut self, place: impl Fn(&Editor) -> Rect) {
+    /// Clicks with the mouse where something is.
+    pub fn click_on(&mut self, place: impl Fn(&Editor) -> Rect) {
         self.hover_at(place(self).center());
         self.step();
         // That frame may have moved it, as a thread's answer does. A button hits what the last frame has there.
@@ -66,45 +54,109 @@ impl Hands for Editor {
         self.run_steps(3);
     }
 
-    fn tap(&mut self, role: Role, label: &str) {
+    /// Clicks as a screen reader does, also what is covered or scrolled away.
+    pub fn tap(&mut self, role: Role, label: &str) {
         self.get_by_role_and_label(role, label).click_accesskit();
         self.run_steps(3);
     }
 
-    fn tap_label(&mut self, label: &str) {
+    pub fn tap_label(&mut self, label: &str) {
         self.get_by_label(label).click_accesskit();
         self.run_steps(3);
     }
 
-    fn set(&mut self, label: &str, value: f64) {
+    /// Sets a number.
+    pub fn set(&mut self, label: &str, value: f64) {
         self.get_by_role_and_label(Role::SpinButton, label)
             .set_value_accesskit(value);
         self.run_steps(2);
     }
 
-    fn write(&mut self, label: &str, text: &str) {
+    /// Writes into a field.
+    pub fn write(&mut self, label: &str, text: &str) {
         let field = self.get_by_role_and_label(Role::TextInput, label);
         field.set_text_value_accesskit(text);
         self.run_steps(2);
     }
 
-    fn command(&mut self, command: Command) {
-        request(self, Action::Do(command));
+    pub fn command(&mut self, command: Command) {
+        self.request(Action::Do(command));
     }
-}
 
-/// Presses a button, in sight or not.
-pub(super) fn press(harness: &mut Editor, label: &str) {
-    harness.tap(Role::Button, label);
-}
+    /// Steps until something is seen, while every control stays the one that it was: else a click under way would be lost.
+    pub fn see(&mut self, what: &str, until: impl Fn(&Editor) -> bool) {
+        let begun = Instant::now();
+        while !until(self) {
+            let before = controls(self);
+            self.step();
+            assert_same_controls(&before, &controls(self), what);
+            let app = self.state();
+            let state = (app.snapshot().activity.clone(), app.messages());
+            assert!(begun.elapsed() < PATIENCE, "waited in vain for {what}: {state:?}");
+            std::thread::sleep(Duration::from_millis(3));
+        }
+    }
 
-/// Types a path where one is asked for, and presses the button behind it.
-pub(super) fn type_path(harness: &mut Editor, path: &Path, button: &str) {
-    see(harness, "the path field", |harness| {
-        harness.query_by_role_and_label(Role::TextInput, "Path").is_some()
-    });
-    harness.check_accessibility();
-    harness.write("Path", &path.display().to_string());
-    press(harness, button);
-    harness.step();
+    /// Steps until a control or text is there.
+    pub fn see_label(&mut self, label: &str) {
+        self.see(label, |harness| harness.has(label));
+    }
+
+    pub fn wait(&mut self, what: &str, until: impl Fn(&App) -> bool) {
+        // What was just done is taken note of.
+        self.step();
+        self.see(what, |harness| until(harness.state()));
+    }
+
+    pub fn wait_for_words(&mut self, part: &str) {
+        self.wait(part, |app| app.messages().iter().any(|text| text.contains(part)));
+    }
+
+    pub fn settle(&mut self) {
+        // What was just done reaches the renderer with the next frame.
+        self.run_steps(3);
+        self.wait("a finished picture", App::is_settled);
+        // The panels show what the wait ended with.
+        self.step();
+        self.check_accessibility();
+    }
+
+    pub fn undo(&mut self) {
+        self.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+        self.settle();
+    }
+
+    pub fn request(&mut self, action: Action) {
+        self.state_mut().request(action);
+        self.run_steps(2);
+    }
+
+    pub fn drag(&mut self, from: Pos2, by: Vec2) {
+        self.hover_at(from);
+        self.step();
+        self.drag_at(from);
+        for step in 1..=6 {
+            self.step();
+            self.hover_at(from + by * (step as f32 / 6.0));
+        }
+        self.step();
+        self.drop_at(from + by);
+        self.run_steps(2);
+    }
+
+    /// Presses a button, in sight or not.
+    pub fn press(&mut self, label: &str) {
+        self.tap(Role::Button, label);
+    }
+
+    /// Types a path where one is asked for, and presses the button behind it.
+    pub fn type_path(&mut self, path: &Path, button: &str) {
+        self.see("the path field", |harness| {
+            harness.query_by_role_and_label(Role::TextInput, "Path").is_some()
+        });
+        self.check_accessibility();
+        self.write("Path", &path.display().to_string());
+        self.press(button);
+        self.step();
+    }
 }

@@ -6,8 +6,7 @@ use glossmith::app::layout::Pane;
 use glossmith::document::{AreaLight, AreaLightShape, Document};
 
 use super::{
-    ui::{Editor, drag, editor_with, settle, undo},
-    ui_hands::Hands as _,
+    ui::{Editor, editor_with},
     worker::small_document,
 };
 
@@ -17,7 +16,7 @@ fn editor_lit_by(lights: &[AreaLight]) -> Editor {
     (document.camera.yaw_deg, document.camera.pitch_deg) = (0.0, 0.0);
     document.lighting.area_lights = lights.to_vec();
     let mut harness = editor_with(document, Vec::new());
-    settle(&mut harness);
+    harness.settle();
     harness.reveal(Pane::Lighting);
     harness
 }
@@ -65,8 +64,8 @@ fn a_light_is_dragged_around_its_target_in_one_step() {
     let before = document(&harness).clone();
     let (mark, by) = ("Move area light 1", Vec2::new(30.0, -20.0));
     let at = place(&harness, mark);
-    drag(&mut harness, at, by);
-    settle(&mut harness);
+    harness.drag(at, by);
+    harness.settle();
     let now = place(&harness, mark);
     assert!(now.distance(at + by) < 1.0, "from {at} to {now}");
     let moved = light(&harness);
@@ -78,17 +77,17 @@ fn a_light_is_dragged_around_its_target_in_one_step() {
     };
     assert_eq!(elsewhere, in_view(), "nothing else of it changed");
     assert_eq!(document(&harness).camera, before.camera);
-    undo(&mut harness);
+    harness.undo();
     assert_eq!(*document(&harness), before);
     // With ctrl in round steps.
-    with_modifiers(&mut harness, Modifiers::COMMAND, |harness| drag(harness, at, by));
+    with_modifiers(&mut harness, Modifiers::COMMAND, |harness| harness.drag(at, by));
     assert_eq!(light(&harness).yaw_deg % 15.0, 0.0);
-    undo(&mut harness);
+    harness.undo();
     // With shift a tenth of the way.
-    with_modifiers(&mut harness, Modifiers::SHIFT, |harness| drag(harness, at, by));
+    with_modifiers(&mut harness, Modifiers::SHIFT, |harness| harness.drag(at, by));
     let now = place(&harness, mark);
     assert!(now.distance(at + 0.1 * by) < 0.5, "finely from {at} to {now}");
-    undo(&mut harness);
+    harness.undo();
     assert_eq!(*document(&harness), before);
 }
 
@@ -116,13 +115,13 @@ fn each_handle_changes_its_number_in_one_step() {
         let at = place(&harness, &format!("{handle} handle of area light 1"));
         let arm = at - middle;
         let by = if handle == "Turn" { arm.rot90() } else { 0.5 * arm };
-        drag(&mut harness, at, by);
-        settle(&mut harness);
+        harness.drag(at, by);
+        harness.settle();
         assert_ne!(number(&light(&harness)), number(&spot), "{handle}");
         for (other, same) in handles.iter().filter(|(other, _)| *other != handle) {
             assert_eq!(same(&light(&harness)), same(&spot), "{handle} changed {other}");
         }
-        undo(&mut harness);
+        harness.undo();
         assert_eq!(*document(&harness), before, "{handle}");
     }
     harness.tap_label("Choose area light 1");
@@ -134,11 +133,11 @@ fn the_environment_is_turned_in_its_preview() {
     let mut harness = editor_lit_by(&[]);
     let before = document(&harness).clone();
     let preview = harness.get_by_label("Environment preview").rect();
-    drag(&mut harness, preview.center(), Vec2::new(0.25 * preview.width(), 7.0));
-    settle(&mut harness);
+    harness.drag(preview.center(), Vec2::new(0.25 * preview.width(), 7.0));
+    harness.settle();
     let rotation_deg = document(&harness).lighting.rotation_deg;
     assert!((rotation_deg + 90.0).abs() < 0.5, "{rotation_deg}");
-    undo(&mut harness);
+    harness.undo();
     assert_eq!(*document(&harness), before);
     harness.get_by_label("Environment preview").focus();
     harness.run_steps(2);
@@ -148,7 +147,7 @@ fn the_environment_is_turned_in_its_preview() {
     harness.key_press_modifiers(Modifiers::COMMAND, Key::ArrowRight);
     harness.run_steps(2);
     assert_eq!(document(&harness).lighting.rotation_deg, -14.0);
-    undo(&mut harness);
+    harness.undo();
     assert_eq!(*document(&harness), before);
 }
 
@@ -166,15 +165,15 @@ fn power_is_the_strength_in_lumens_and_stays_as_it_was_set() {
         .world_units_per_unit;
     let power = harness.get_by_role_and_label(Role::SpinButton, "Area light 1 power");
     power.set_value_accesskit(500.0);
-    settle(&mut harness);
-    assert!((light(&harness).power(radius) - 500.0).abs() < 0.01);
+    harness.settle();
+    near!(light(&harness).power(radius), 500.0, 0.01);
     let before = document(&harness).clone();
     harness.run_steps(5);
     assert_eq!(*document(&harness), before, "showing it edits nothing");
     harness.set("Scene unit", 0.01);
-    settle(&mut harness);
+    harness.settle();
     assert_eq!(document(&harness).lighting, before.lighting);
     let shown = harness.get_by_role_and_label(Role::SpinButton, "Area light 1 power");
     let shown = shown.accesskit_node().numeric_value().expect("a number");
-    assert!((shown - 0.05).abs() < 1e-3, "{shown}");
+    near!(shown, 0.05, 0.001);
 }

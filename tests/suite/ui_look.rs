@@ -9,8 +9,7 @@ use glossmith::{
 };
 
 use super::{
-    ui::{Editor, editor_with, picture, request, see, settle, wait},
-    ui_hands::Hands as _,
+    ui::{Editor, editor_with, picture},
     worker::small_document,
 };
 
@@ -37,14 +36,14 @@ fn editor() -> Editor {
     document.render.samples = 16;
     document.view.exposure_ev = 2.5;
     let mut harness = editor_with(document, Vec::new());
-    settle(&mut harness);
+    harness.settle();
     harness
 }
 
 fn inspecting() -> Editor {
     let mut harness = editor();
     harness.reveal(Pane::Inspector);
-    wait(&mut harness, "what is known of pixels", |app| {
+    harness.wait("what is known of pixels", |app| {
         app.snapshot()
             .picture
             .as_ref()
@@ -82,7 +81,7 @@ fn the_inspector_tells_of_the_pixel_under_the_pointer() {
     // The middle shows the model, the corner the background.
     assert!(says(&harness, "none: the background"));
     hover_pixel(&mut harness, [20, 12]);
-    let name = harness.document().materials[0].name.clone();
+    let name = harness.material().name.clone();
     assert!(says(&harness, &name) && !says(&harness, "none: the background"));
     assert!(says(&harness, "Histogram of the image") && says(&harness, "Too bright for the screen"));
 }
@@ -102,7 +101,7 @@ fn maps_are_chosen_over_the_picture_and_leave_it_as_it_is() {
             let choice = choices.find(|choice| over.contains(choice.rect().center().x));
             choice.expect("it is in the menu").rect()
         });
-        wait(&mut harness, label, |app| {
+        harness.wait(label, |app| {
             let picture = app.snapshot().picture.clone();
             picture.is_some_and(|picture| picture.map.is_some_and(|(of, _)| of == map))
         });
@@ -111,8 +110,8 @@ fn maps_are_chosen_over_the_picture_and_leave_it_as_it_is() {
         assert!(!seen.contains(&rgba), "{label} shows nothing of its own");
         seen.push(rgba);
     }
-    request(&mut harness, Action::Show(Shown::Picture));
-    wait(&mut harness, "the picture", |app| {
+    harness.request(Action::Show(Shown::Picture));
+    harness.wait("the picture", |app| {
         app.snapshot()
             .picture
             .clone()
@@ -181,7 +180,7 @@ fn the_pictures_own_pixels_are_magnified_without_moving_the_camera() {
         assert_eq!(harness.has(whole), is_magnified, "{key:?}");
     }
     harness.command(Command::ZoomIn);
-    settle(&mut harness);
-    see(&mut harness, "the whole image's button", |harness| harness.has(whole));
+    harness.settle();
+    harness.see("the whole image's button", |harness| harness.has(whole));
     assert_eq!(*harness.document(), before);
 }

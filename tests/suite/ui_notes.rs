@@ -7,8 +7,8 @@ use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use glossmith::app::{Options, actions::Action, actions::Command, library::Change, workspaces::LOOK};
 
 use super::{
-    ui::{Editor, editor_of, options, request, see, see_label, settle},
-    ui_hands::{Hands as _, press, type_path},
+    cli_support::Workplace,
+    ui::{Editor, editor_of, options},
     worker::small_document,
 };
 
@@ -34,8 +34,8 @@ fn has(harness: &Editor, part: &str) -> bool {
 
 fn save(harness: &mut Editor, command: Command, path: &Path, note: &str) {
     harness.command(command);
-    type_path(harness, path, "Save");
-    see_label(harness, note);
+    harness.type_path(path, "Save");
+    harness.see_label(note);
 }
 
 /// Closes the note that is shown last.
@@ -46,15 +46,15 @@ fn close(harness: &mut Editor) {
         .filter_map(|node| node.accesskit_node().label());
     let label = labels.find(|label| is_close(label)).expect("a note");
     drop(labels);
-    press(harness, &label);
+    harness.press(&label);
 }
 
 #[test]
 fn each_save_is_reported_over_the_viewport() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let path = |name: &str| folder.path().join(name);
-    let mut harness = editor(folder.path(), 3);
-    settle(&mut harness);
+    let folder = Workplace::new();
+    let path = |name: &str| folder.path(name);
+    let mut harness = editor(folder.root(), 3);
+    harness.settle();
     for (command, name, note) in [
         (Command::SavePicture, "shown.png", "Saved shown.png: 3 samples"),
         (Command::SaveLayers, "deep.exr", "Saved deep.exr: layers, 3 samples"),
@@ -69,46 +69,44 @@ fn each_save_is_reported_over_the_viewport() {
     }
     // Saved again without being asked for a name.
     harness.command(Command::Save);
-    see_label(&mut harness, "Saved scene.json");
+    harness.see_label("Saved scene.json");
     close(&mut harness);
     harness.command(Command::CopyPicture);
-    see_label(&mut harness, "Copied the image: 3 samples");
+    harness.see_label("Copied the image: 3 samples");
     close(&mut harness);
-    request(&mut harness, Action::ChangeSnapshots(Change::Add));
-    see(&mut harness, "the snapshot", |harness| has(harness, "Pinned "));
+    harness.request(Action::ChangeSnapshots(Change::Add));
+    harness.see("the snapshot", |harness| has(harness, "Pinned "));
     close(&mut harness);
-    request(&mut harness, Action::ChangeLibrary(Change::Add));
-    see(&mut harness, "the preset", |harness| {
+    harness.request(Action::ChangeLibrary(Change::Add));
+    harness.see("the preset", |harness| {
         has(harness, ".json: one of your presets") && harness.has("New name")
     });
     harness.key_press(egui::Key::Escape);
     harness.run_steps(2);
     close(&mut harness);
     harness.command(Command::Export);
-    type_path(&mut harness, &path("out.mtlx"), "Save");
-    see_label(&mut harness, "Write the file");
+    harness.type_path(&path("out.mtlx"), "Save");
+    harness.see_label("Write the file");
     harness.run_steps(3);
-    press(&mut harness, "Write the file");
-    see_label(&mut harness, "Exported out.mtlx");
+    harness.press("Write the file");
+    harness.see_label("Exported out.mtlx");
     close(&mut harness);
     harness.command(Command::QueuePicture);
-    type_path(&mut harness, &path("queued.png"), "Save");
-    see(&mut harness, "the render", |harness| {
-        has(harness, "queued.png: 3 samples")
-    });
+    harness.type_path(&path("queued.png"), "Save");
+    harness.see("the render", |harness| has(harness, "queued.png: 3 samples"));
     harness.check_accessibility();
 }
 
 /// The screenshot comes from the GPU that paints the window.
 #[test]
 fn a_screenshot_is_reported() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let mut harness = editor(folder.path(), 3);
-    settle(&mut harness);
+    let folder = Workplace::new();
+    let mut harness = editor(folder.root(), 3);
+    harness.settle();
     save(
         &mut harness,
         Command::SaveWindow,
-        &folder.path().join("window.png"),
+        &folder.path("window.png"),
         "Saved window.png: 1280 × 720 pixels",
     );
 }
@@ -116,10 +114,10 @@ fn a_screenshot_is_reported() {
 /// An image that is not finished is reported as such, with a way to finish it.
 #[test]
 fn a_save_of_an_unfinished_image_offers_to_render_it() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let mut harness = editor(folder.path(), 60_000);
+    let folder = Workplace::new();
+    let mut harness = editor(folder.root(), 60_000);
     harness.command(Command::Pause);
-    see(&mut harness, "the first image", |harness| {
+    harness.see("the first image", |harness| {
         let snapshot = harness.state().snapshot();
         snapshot.activity == glossmith::render::worker::Activity::Paused && snapshot.picture.is_some()
     });
@@ -134,14 +132,14 @@ fn a_save_of_an_unfinished_image_offers_to_render_it() {
             _ => snapshot.picture.as_ref().expect("it was waited for").samples_per_pixel,
         };
         let note = format!("{saved}{count} of 60000 samples");
-        save(&mut harness, command, &folder.path().join(name), &note);
+        save(&mut harness, command, &folder.path(name), &note);
         assert!(has(&harness, RENDER));
         close(&mut harness);
         assert!(!has(&harness, RENDER));
     }
     harness.command(Command::CopyPicture);
-    see(&mut harness, "the copy", |harness| has(harness, RENDER));
+    harness.see("the copy", |harness| has(harness, RENDER));
     harness.click_on(|harness| harness.get_by_label_contains(RENDER).rect());
-    type_path(&mut harness, &folder.path().join("whole.png"), "Save");
-    see(&mut harness, "the queue", |harness| has(harness, "whole.png"));
+    harness.type_path(&folder.path("whole.png"), "Save");
+    harness.see("the queue", |harness| has(harness, "whole.png"));
 }

@@ -12,20 +12,18 @@ use glossmith::{
 };
 
 use super::{
-    gltf_builder::Folder,
-    ui::{Editor, editor_with, picture, request, settle, undo},
-    ui_hands::{Hands as _, press},
+    cli_support::Workplace,
+    ui::{Editor, editor_with, picture},
     worker::small_document,
 };
 
 /// Two squares side by side, facing the camera, each an object with a material of its own.
-fn two_squares(folder: &Folder) -> Document {
+fn two_squares(folder: &Workplace) -> Document {
     let path = folder.path("squares.obj");
-    std::fs::write(
-        folder.path("squares.mtl"),
+    folder.write(
+        "squares.mtl",
         "newmtl red\nKd 0.8 0.1 0.1\nnewmtl green\nKd 0.1 0.8 0.1\n",
-    )
-    .expect("a file");
+    );
     let square = |name: &str, material: &str, x: f32, first: u32| {
         let [a, b, c, d] = [first, first + 1, first + 2, first + 3];
         let corners = [[x, -1.0], [x + 1.8, -1.0], [x + 1.8, 1.0], [x, 1.0]];
@@ -59,7 +57,7 @@ fn two_squares(folder: &Folder) -> Document {
 
 fn opened(document: Document) -> Editor {
     let mut harness = editor_with(document, Vec::new());
-    settle(&mut harness);
+    harness.settle();
     harness.reveal(Pane::Scene);
     harness
 }
@@ -72,7 +70,7 @@ fn button(harness: &Editor, label: &str) -> bool {
 fn press_in_menu(harness: &mut Editor, line: &str, entry: &str) {
     harness.get_by_role_and_label(Role::Button, line).click_secondary();
     harness.run_steps(3);
-    press(harness, entry);
+    harness.press(entry);
 }
 
 fn click_with(harness: &mut Editor, at: Pos2, modifiers: Modifiers) {
@@ -93,12 +91,12 @@ fn click_with(harness: &mut Editor, at: Pos2, modifiers: Modifiers) {
 
 #[test]
 fn objects_are_hidden_isolated_and_shown_again() {
-    let folder = Folder::new();
+    let folder = Workplace::new();
     let document = two_squares(&folder);
     let mut harness = opened(document.clone());
     let whole = picture(&harness);
-    press(&mut harness, "Hide left");
-    settle(&mut harness);
+    harness.press("Hide left");
+    harness.settle();
     assert_eq!(harness.document().hidden_objects, [0]);
     let without = picture(&harness);
     // Only what was in the left half has changed.
@@ -106,34 +104,37 @@ fn objects_are_hidden_isolated_and_shown_again() {
     assert!(differs(0), "it is still there");
     let right = (0..24).all(|y| (24..32).all(|x| (whole[y * 40 + x][1] - without[y * 40 + x][1]).abs() < 0.35));
     assert!(right, "the other one stays where it was");
-    press(&mut harness, "Show left");
-    settle(&mut harness);
+    harness.press("Show left");
+    harness.settle();
     assert_eq!(picture(&harness), whole);
     press_in_menu(&mut harness, "Object left", "Isolate");
-    settle(&mut harness);
+    harness.settle();
     assert_eq!(harness.document().hidden_objects, [1]);
     harness.command(Command::ShowObjects);
-    settle(&mut harness);
+    harness.settle();
     assert_eq!(picture(&harness), whole);
+    harness.press("Edit");
+    harness.get_by_label_contains("Undo: Show all objects");
+    harness.key_press(Key::Escape);
     // Nothing at all is a picture, too.
-    press(&mut harness, "Hide left");
-    press(&mut harness, "Hide right");
-    settle(&mut harness);
+    harness.press("Hide left");
+    harness.press("Hide right");
+    harness.settle();
     assert_eq!(harness.document().hidden_objects, [0, 1]);
     for _ in 0..2 {
-        undo(&mut harness);
+        harness.undo();
     }
     assert_eq!(picture(&harness), whole);
-    press(&mut harness, "Show ground");
-    settle(&mut harness);
+    harness.press("Show ground");
+    harness.settle();
     assert!(harness.document().ground);
 }
 
 #[test]
 fn what_is_hidden_and_renamed_is_saved_and_the_command_line_hides_it() {
-    let folder = Folder::new();
+    let folder = Workplace::new();
     let mut harness = opened(two_squares(&folder));
-    press(&mut harness, "Hide right");
+    harness.press("Hide right");
     press_in_menu(&mut harness, "Object left", "Rename");
     harness.get_by_label("New name").type_text("wing");
     harness.run_steps(2);
@@ -158,7 +159,7 @@ fn what_is_hidden_and_renamed_is_saved_and_the_command_line_hides_it() {
 
 #[test]
 fn materials_chosen_together_are_edited_together() {
-    let folder = Folder::new();
+    let folder = Workplace::new();
     let mut harness = opened(two_squares(&folder));
     let before = harness.document().clone();
     harness.click(Role::Button, "Slot 1: red");
@@ -169,7 +170,7 @@ fn materials_chosen_together_are_edited_together() {
     click_with(&mut harness, green, Modifiers::COMMAND);
     assert!(harness.has("2 materials are edited together."));
     harness.set("Specular roughness", 0.77);
-    settle(&mut harness);
+    harness.settle();
     let materials = harness.document().materials.clone();
     assert_eq!([materials[0].roughness, materials[1].roughness], [0.77; 2]);
     assert_eq!(
@@ -177,12 +178,12 @@ fn materials_chosen_together_are_edited_together() {
         ["red", "green"],
         "names stay their own"
     );
-    undo(&mut harness);
+    harness.undo();
     assert_eq!(*harness.document(), before, "in one step");
     // A preset goes to both as well.
-    request(&mut harness, Action::UseMaterial(Box::new(PRESETS[3].clone())));
+    harness.request(Action::UseMaterial(Box::new(PRESETS[3].clone())));
     assert_eq!(harness.document().materials, [PRESETS[3].clone(), PRESETS[3].clone()]);
-    undo(&mut harness);
+    harness.undo();
     harness.click(Role::Button, "Slot 2: green");
     assert!(!harness.has("2 materials are edited together."));
 }

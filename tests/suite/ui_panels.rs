@@ -13,23 +13,22 @@ use glossmith::{
 use serde_json::json;
 
 use super::{
-    cli_support::write_hdr,
-    gltf_builder::{Folder, glb},
+    cli_support::{Workplace, write_hdr},
+    gltf_builder::glb,
     textures::{four_texels, textured_square},
-    ui::{Editor, editor, editor_of, editor_with, options, picture, request, see, see_label, settle, undo, wait},
-    ui_hands::Hands as _,
+    ui::{Editor, editor, editor_of, editor_with, options, picture},
     worker::small_document,
 };
 
 /// A file with a square whose colour and roughness are pictures.
-fn textured_file(folder: &Folder) -> std::path::PathBuf {
+fn textured_file(folder: &Workplace) -> std::path::PathBuf {
     let path = folder.path("square.glb");
     write_textured_square(&path);
     path
 }
 
 /// Writes a square whose colour and roughness are pictures.
-pub(super) fn write_textured_square(path: &std::path::Path) {
+pub fn write_textured_square(path: &std::path::Path) {
     let material = json!({"pbrMetallicRoughness": {
         "baseColorTexture": {"index": 0}, "metallicRoughnessTexture": {"index": 1}
     }});
@@ -39,27 +38,27 @@ pub(super) fn write_textured_square(path: &std::path::Path) {
 
 #[test]
 fn textures_have_rows_that_switch_them() {
-    let folder = Folder::new();
+    let folder = Workplace::new();
     let mut document = small_document();
     (document.camera.yaw_deg, document.camera.pitch_deg) = (0.0, 0.0);
     let mut harness = editor_with(document, vec![textured_file(&folder)]);
-    settle(&mut harness);
+    harness.settle();
     assert!(!harness.has("Geometry normal texture"), "it has no normals");
     let textured = picture(&harness);
     for label in ["Specular roughness texture", "Base colour texture"] {
         let switch = |harness: &mut Editor| {
             harness.get_by_role_and_label(Role::CheckBox, label).click_accesskit();
-            settle(harness);
+            harness.settle();
         };
         let before = harness.document().clone();
         switch(&mut harness);
-        let uses = harness.document().materials[0].textures;
+        let uses = harness.material().textures;
         assert_eq!(
             (uses[TextureTarget::BaseColor], uses[TextureTarget::Roughness]),
             (label != "Base colour texture", label == "Base colour texture")
         );
         assert!(picture(&harness) != textured, "{label}");
-        undo(&mut harness);
+        harness.undo();
         assert_eq!(*harness.document(), before);
         assert!(picture(&harness) == textured, "{label}: undo");
     }
@@ -68,25 +67,25 @@ fn textures_have_rows_that_switch_them() {
 /// Files given at the start are where editing begins; undo does not go behind them.
 #[test]
 fn undo_stops_at_the_files_given_at_the_start() {
-    let folder = Folder::new();
+    let folder = Workplace::new();
     let light = folder.path("orange.hdr");
     write_hdr(&light, 16, 8, |_, _| [1.0, 0.4, 0.1]);
     let mut harness = editor_with(small_document(), vec![textured_file(&folder), light]);
-    settle(&mut harness);
+    harness.settle();
     let start = harness.document().clone();
     assert!(matches!(start.model, ModelSource::File(_)), "{:?}", start.model);
     harness.set("Specular roughness", 0.85);
-    settle(&mut harness);
+    harness.settle();
     assert_ne!(*harness.document(), start);
     for _ in 0..3 {
-        undo(&mut harness);
+        harness.undo();
     }
     assert_eq!(*harness.document(), start);
 }
 
 #[test]
 fn opened_models_get_the_lobe_that_the_menu_says() {
-    let folder = Folder::new();
+    let folder = Workplace::new();
     // Smooth enough for either: what is rougher than 0.7 is GGX whatever the menu says.
     let material = json!({"pbrMetallicRoughness": {"roughnessFactor": 0.5}});
     let (buffer, document) = textured_square(&material, &[], &json!({}));
@@ -99,22 +98,20 @@ fn opened_models_get_the_lobe_that_the_menu_says() {
         harness.click(Role::RadioButton, label);
         harness.key_press(Key::Escape);
         harness.run_steps(2);
-        request(&mut harness, Action::UseModel(ModelSource::Sphere));
-        wait(&mut harness, "the sphere", |app| {
-            app.document().model == ModelSource::Sphere
-        });
-        request(&mut harness, Action::Open(path.clone()));
-        wait(&mut harness, "the model", |app| {
+        harness.request(Action::UseModel(ModelSource::Sphere));
+        harness.wait("the sphere", |app| app.document().model == ModelSource::Sphere);
+        harness.request(Action::Open(path.clone()));
+        harness.wait("the model", |app| {
             app.document().model == ModelSource::File(path.clone())
         });
-        assert_eq!(harness.document().materials[0].lobe, lobe);
+        assert_eq!(harness.material().lobe, lobe);
         assert!(harness.document().ground, "it stands on something");
     }
 }
 
 #[test]
 fn environments_are_listed_with_pictures_and_files_stay_in_the_list() {
-    let folder = Folder::new();
+    let folder = Workplace::new();
     let light = folder.path("orange.hdr");
     write_hdr(&light, 16, 8, |_, _| [1.0, 0.4, 0.1]);
     let cache = folder.path("cache");
@@ -122,33 +119,29 @@ fn environments_are_listed_with_pictures_and_files_stay_in_the_list() {
         cache: Some(cache.clone()),
         ..options()
     });
-    settle(&mut harness);
+    harness.settle();
     harness.state_mut().reveal(Pane::Lighting);
-    request(&mut harness, Action::Open(light.clone()));
+    harness.request(Action::Open(light.clone()));
     let source = EnvironmentSource::File(light);
-    wait(&mut harness, "the light", |app| {
-        app.document().lighting.environment == source
-    });
-    settle(&mut harness);
+    harness.wait("the light", |app| app.document().lighting.environment == source);
+    harness.settle();
     // Before a photograph the ground is its shadow alone.
     assert_eq!(harness.document().lighting.ground.kind, GroundKind::ShadowCatcher);
     harness.get_by_role_and_label(Role::Button, "Sky").click_accesskit();
-    wait(&mut harness, "the sky", |app| {
+    harness.wait("the sky", |app| {
         app.document().lighting.environment == EnvironmentSource::Sky
     });
     harness
         .get_by_role_and_label(Role::Button, "orange.hdr")
         .click_accesskit();
-    wait(&mut harness, "the light again", |app| {
-        app.document().lighting.environment == source
-    });
+    harness.wait("the light again", |app| app.document().lighting.environment == source);
     // Studio, sky, furnace and the file.
-    see(&mut harness, "the pictures", |_| {
+    harness.see("the pictures", |_| {
         std::fs::read_dir(cache.join("environments")).is_ok_and(|entries| entries.count() == 4)
     });
     harness.run_steps(2);
     harness.check_accessibility();
-    undo(&mut harness);
+    harness.undo();
     assert_eq!(harness.document().lighting.environment, EnvironmentSource::Sky);
 }
 
@@ -167,8 +160,8 @@ fn the_palette_leads_to_parameters_and_panels() {
     harness.event(egui::Event::Text("0.9".to_owned()));
     harness.run_steps(2);
     harness.key_press(Key::Enter);
-    settle(&mut harness);
-    assert_eq!(harness.document().materials[0].roughness, 0.9);
+    harness.settle();
+    assert_eq!(harness.material().roughness, 0.9);
     // Digits after Enter are not those of the view.
     let camera = harness.document().camera;
     harness.key_press(Key::Num5);
@@ -185,9 +178,9 @@ fn the_palette_leads_to_parameters_and_panels() {
     harness.event(egui::Event::Text("1".to_owned()));
     harness.run_steps(2);
     harness.key_press(Key::Enter);
-    settle(&mut harness);
+    harness.settle();
     assert!(harness.has("Coat on the base") && harness.has("Coat darkening"));
-    undo(&mut harness);
+    harness.undo();
     for (words, key, value) in [
         ("specular lobe", Key::ArrowDown, Lobe::ALL[1]),
         ("specular lobe", Key::ArrowUp, Lobe::ALL[0]),
@@ -199,7 +192,7 @@ fn the_palette_leads_to_parameters_and_panels() {
         harness.run_steps(4);
         harness.key_press(key);
         harness.run_steps(2);
-        assert_eq!(harness.document().materials[0].lobe, value);
+        assert_eq!(harness.material().lobe, value);
     }
     harness.command(Command::Palette);
     harness.event(egui::Event::Text("show samples".to_owned()));
@@ -286,25 +279,22 @@ fn a_named_curve_becomes_a_custom_one_in_its_panel() {
         let mut document = small_document();
         document.materials[0].curve = named;
         let mut harness = editor_with(document, Vec::new());
-        settle(&mut harness);
+        harness.settle();
         let before = harness.document().clone();
         make_custom(&mut harness, is_by_button);
-        settle(&mut harness);
-        let material = &harness.document().materials[0];
+        harness.settle();
+        let material = harness.material();
         assert_eq!(material.curve, Curve::Custom);
         if is_by_button {
             let table = material.custom_curve.table();
             for distance in [0.3, 0.5, 0.7, 0.9_f64] {
                 let [own, of_named] = [(Curve::Custom, &table[..]), (named, &[])]
                     .map(|(curve, table)| curve_density(curve, table, distance));
-                assert!(
-                    (own / of_named - 1.0).abs() < 0.05,
-                    "{own} and {of_named} at {distance}"
-                );
+                near!(own / of_named, 1.0, 0.05, "{own} and {of_named} at {distance}");
             }
         }
         assert!(!harness.has("Edit as custom"));
-        undo(&mut harness);
+        harness.undo();
         assert_eq!(*harness.document(), before);
     }
 }
@@ -367,13 +357,13 @@ fn a_look_is_matched_used_and_undone() {
     harness.click(Role::Button, "GGX");
     // The panel may have to be scrolled to reach the buttons, which accessibility does by itself.
     harness.get_by_label("Match look").click_accesskit();
-    see_label(&mut harness, "Use it");
+    harness.see_label("Use it");
     let before = harness.document().clone();
     harness.get_by_label("Use it").click_accesskit();
-    settle(&mut harness);
-    let material = &harness.document().materials[0];
+    harness.settle();
+    let material = harness.material();
     assert_eq!((material.lobe, material.curve), (Lobe::Geometric, Curve::Custom));
     assert_ne!(material.custom_curve, before.materials[0].custom_curve);
-    undo(&mut harness);
+    harness.undo();
     assert_eq!(*harness.document(), before);
 }

@@ -4,15 +4,14 @@
 use std::path::Path;
 
 use egui::{Rect, Vec2};
-use egui_kittest::{Harness, SnapshotOptions, image_snapshot_options, kittest::Queryable as _};
+use egui_kittest::{SnapshotOptions, image_snapshot_options, kittest::Queryable as _};
 use glossmith::{
-    app::{App, Options, actions::Command, layout::Pane},
+    app::{Options, actions::Command, layout::Pane},
     document::Document,
 };
 
 use super::{
-    ui::{options, see_label, settle, wait},
-    ui_hands::Hands as _,
+    ui::{Editor, editor_sized, options},
     ui_study::race_strategies,
 };
 
@@ -21,25 +20,20 @@ const COLOR_TOLERANCE: f32 = 2.0;
 /// A changed row is more.
 const PIXELS_TOLERATED: usize = 300;
 
-fn editor(options: Options) -> Harness<'static, App> {
-    let mut harness = Harness::builder()
-        .with_size(Vec2::new(1100.0, 720.0))
-        .build_eframe(move |creation| App::new(creation, options).expect("a thread to render on"));
-    for pane in [Pane::Lighting, Pane::Curve] {
-        harness.state_mut().reveal(pane);
-    }
-    settle(&mut harness);
+fn editor(options: Options) -> Editor {
+    let mut harness = editor_sized(Vec2::new(1100.0, 720.0), options);
+    harness.settle();
     harness
 }
 
 /// Compares the window with its picture, in both themes. The renderer's picture, numbers made from it, and the status bar,
 /// which has times in it, are left out: other tests look at them.
-fn compare(harness: &mut Harness<'static, App>, name: &str) {
+fn compare(harness: &mut Editor, name: &str) {
     compare_but(harness, name, &[]);
 }
 
 /// The same, with other places left out, too.
-fn compare_but(harness: &mut Harness<'static, App>, name: &str, changing: &[Rect]) {
+fn compare_but(harness: &mut Editor, name: &str, changing: &[Rect]) {
     for theme in ["dark", "light"] {
         // The pointer lies where it changes nothing.
         harness.hover_at(egui::pos2(-10.0, -10.0));
@@ -80,7 +74,7 @@ fn cover(window: &mut image::RgbaImage, place: Rect) {
 fn camera_and_curve() {
     let mut harness = editor(options());
     harness.state_mut().reveal(Pane::Camera);
-    settle(&mut harness);
+    harness.settle();
     compare(&mut harness, "camera-and-curve");
 }
 
@@ -90,10 +84,10 @@ fn two_compared_beside_effects() {
     harness.state_mut().reveal(Pane::Effects);
     harness.state_mut().reveal(Pane::Snapshots);
     harness.command(Command::Compare);
-    settle(&mut harness);
+    harness.settle();
     // B's roughness is found, and then rendered with.
     let roughness = |document: &Document| document.materials[0].roughness;
-    wait(&mut harness, "B with its look matched", |app| {
+    harness.wait("B with its look matched", |app| {
         let rival = app.rival_snapshot().and_then(|rival| rival.picture.clone());
         let is_matched = rival.is_some_and(|rival| roughness(&rival.document) != roughness(app.document()));
         is_matched && app.rms_difference().is_some()
@@ -107,7 +101,7 @@ fn the_scene_as_a_tree() {
     harness.state_mut().reveal(Pane::Scene);
     // Small pictures of environments come when they are made.
     harness.state_mut().reveal(Pane::Camera);
-    settle(&mut harness);
+    harness.settle();
     compare(&mut harness, "scene");
 }
 
@@ -116,7 +110,7 @@ fn the_scene_as_a_tree() {
 fn the_race_beside_the_convergence() {
     let mut harness = editor(options());
     race_strategies(&mut harness, 0.02);
-    see_label(&mut harness, "Run the race");
+    harness.see_label("Run the race");
     harness.reveal(Pane::Convergence);
     let place = |label: &str| harness.get_by_label(label).rect();
     let (race, error) = (place("Time against bias"), place("Error against time"));
@@ -139,6 +133,6 @@ fn the_browser_of_presets() {
     let mut harness = editor(options());
     harness.state_mut().reveal(Pane::Presets);
     harness.state_mut().reveal(Pane::Camera);
-    settle(&mut harness);
+    harness.settle();
     compare(&mut harness, "browser");
 }

@@ -7,9 +7,9 @@ use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use glossmith::app::{actions::Action, actions::Command, layout::Pane};
 
 use super::{
-    ui::{Editor, editor, request, see, settle},
-    ui_files::{says, wait_for_words},
-    ui_hands::{Hands as _, press, type_path},
+    cli_support::Workplace,
+    ui::{Editor, editor},
+    ui_files::says,
 };
 
 fn set(harness: &mut Editor, label: &str, value: f64) {
@@ -31,59 +31,57 @@ fn turn(harness: &mut Editor, form: &str, output: &Path, [frames, samples]: [f64
     harness.tap(Role::ComboBox, "Turntable form");
     harness.tap_label(form);
     harness.write("Turntable output", &output.display().to_string());
-    press(harness, "Add to the queue");
+    harness.press("Add to the queue");
 }
 
 #[test]
 fn a_turntable_becomes_pictures_and_a_video_beside_the_window() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let path = |name: &str| folder.path().join(name);
+    let folder = Workplace::new();
+    let path = |name: &str| folder.path(name);
     let mut harness = editor();
     turn(&mut harness, "Images", &path("turn"), [3.0, 2.0]);
-    wait_for_words(&mut harness, "turntable: 3 frames");
+    harness.wait_for_words("turntable: 3 frames");
     assert_eq!(std::fs::read_dir(path("turn")).expect("made").count(), 3);
     let size = image::image_dimensions(path("turn/frame-0003.png")).expect("a picture");
     assert_eq!(size, (20, 16));
     // The ending follows what was chosen.
     turn(&mut harness, "Video (.mp4)", &path("film.gif"), [4.0, 2.0]);
-    wait_for_words(&mut harness, "film.mp4");
+    harness.wait_for_words("film.mp4");
     let bytes = std::fs::read(path("film.mp4")).expect("the video");
     assert_eq!(&bytes[4..8], b"ftyp");
     harness.run_steps(2);
     harness.check_accessibility();
     // What is below stays the control that it was.
     let below = harness.get_by_label("Remove film.mp4").accesskit_node().locate();
-    press(&mut harness, "Remove turn");
+    harness.press("Remove turn");
     assert!(!harness.has("Remove turn"));
     assert_eq!(harness.get_by_label("Remove film.mp4").accesskit_node().locate(), below);
-    press(&mut harness, "Clear finished");
+    harness.press("Clear finished");
     assert!(!harness.has("Remove film.mp4"));
 }
 
 #[test]
 fn the_queue_is_paused_reordered_called_off_and_asked_about() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let path = |name: &str| folder.path().join(name);
+    let folder = Workplace::new();
+    let path = |name: &str| folder.path(name);
     let mut harness = editor();
-    request(&mut harness, Action::Reveal(Pane::Queue));
+    harness.request(Action::Reveal(Pane::Queue));
     harness.run_steps(2);
     harness.click(Role::CheckBox, "Pause the queue");
     turn(&mut harness, "Animation (.gif)", &path("long.gif"), [9000.0, 4000.0]);
     for name in ["first.png", "second.exr"] {
         harness.command(Command::QueuePicture);
-        type_path(&mut harness, &path(name), "Save");
+        harness.type_path(&path(name), "Save");
     }
-    press(&mut harness, "Next second.exr");
-    press(&mut harness, "Cancel first.png");
+    harness.press("Next second.exr");
+    harness.press("Cancel first.png");
     // What is edited afterwards is no part of it.
-    request(&mut harness, Action::LookFrom(90.0, 0.0));
-    settle(&mut harness);
+    harness.request(Action::LookFrom(90.0, 0.0));
+    harness.settle();
     harness.click(Role::CheckBox, "Pause the queue");
-    wait_for_words(&mut harness, "second.exr: 3 samples per pixel");
+    harness.wait_for_words("second.exr: 3 samples per pixel");
     assert!(!path("first.png").exists());
-    see(&mut harness, "the turn under way", |harness| {
-        harness.has("Progress of long.gif")
-    });
+    harness.see("the turn under way", |harness| harness.has("Progress of long.gif"));
     let close = |harness: &mut Editor| {
         let viewport = harness.input_mut().viewports.get_mut(&ViewportId::ROOT);
         viewport.expect("the window").events.push(ViewportEvent::Close);
@@ -96,10 +94,10 @@ fn the_queue_is_paused_reordered_called_off_and_asked_about() {
     };
     assert!(!close(&mut harness), "it asks first");
     harness.check_accessibility();
-    press(&mut harness, "Keep rendering");
+    harness.press("Keep rendering");
     assert!(harness.has("Progress of long.gif"));
-    press(&mut harness, "Cancel long.gif");
-    wait_for_words(&mut harness, "turntable cancelled");
+    harness.press("Cancel long.gif");
+    harness.wait_for_words("turntable cancelled");
     assert!(!path("long.gif").exists(), "a video is whole or not there");
     assert!(!says(&harness, "internal error"));
 }
@@ -107,7 +105,7 @@ fn the_queue_is_paused_reordered_called_off_and_asked_about() {
 #[test]
 fn the_viewport_turns_until_escape_and_the_document_stays() {
     let mut harness = editor();
-    settle(&mut harness);
+    harness.settle();
     let document = harness.document().clone();
     harness.key_press(Key::T);
     let yaw = |harness: &Editor| {
@@ -116,20 +114,20 @@ fn the_viewport_turns_until_escape_and_the_document_stays() {
     };
     for _ in 0..2 {
         let before = yaw(&harness);
-        see(&mut harness, "a turn", |harness| yaw(harness) != before);
+        harness.see("a turn", |harness| yaw(harness) != before);
     }
     assert_eq!(*harness.document(), document);
     // What is edited meanwhile is seen while it goes on.
     harness.command(Command::ResetMaterial);
     let before = yaw(&harness);
-    see(&mut harness, "a turn", |harness| yaw(harness) != before);
+    harness.see("a turn", |harness| yaw(harness) != before);
     harness.key_press_modifiers(Modifiers::NONE, Key::Escape);
-    settle(&mut harness);
+    harness.settle();
     assert_eq!(yaw(&harness), document.camera.yaw_deg);
     harness.key_press(Key::T);
     let before = yaw(&harness);
-    see(&mut harness, "a turn", |harness| yaw(harness) != before);
-    request(&mut harness, Action::LookFrom(90.0, 0.0));
-    settle(&mut harness);
+    harness.see("a turn", |harness| yaw(harness) != before);
+    harness.request(Action::LookFrom(90.0, 0.0));
+    harness.settle();
     assert_eq!(yaw(&harness), 90.0, "who moves the camera has it");
 }

@@ -10,18 +10,17 @@ use glossmith::{
 };
 
 use super::{
-    ui::{Editor, editor, editor_of, options, picture, see_label, settle, undo},
-    ui_hands::Hands as _,
+    ui::{Editor, editor, editor_of, options, picture},
     worker::small_document,
 };
 
-pub(super) fn choose(harness: &mut Editor, menu: &str, item: &str) {
+pub fn choose(harness: &mut Editor, menu: &str, item: &str) {
     harness.tap(Role::ComboBox, menu);
     harness.get_by_role_and_label(Role::Button, item).click_accesskit();
-    settle(harness);
+    harness.settle();
 }
 
-pub(super) fn click_at(harness: &mut Editor, at: Pos2) {
+pub fn click_at(harness: &mut Editor, at: Pos2) {
     harness.hover_at(at);
     harness.step();
     harness.drag_at(at);
@@ -43,14 +42,14 @@ fn an_effect_is_switched_off_and_back() {
         document: Some(document),
         ..options()
     });
-    settle(&mut harness);
+    harness.settle();
     let before = picture(&harness);
     harness.reveal(Pane::Effects);
     choose(&mut harness, "Ground: auto, on or off", "off");
     assert_eq!(harness.document().render.effects.get(EffectId::Ground), Switch::Off);
     assert!(harness.document().ground, "the document keeps its ground");
     assert_ne!(picture(&harness), before);
-    undo(&mut harness);
+    harness.undo();
     assert_eq!(picture(&harness), before);
 }
 
@@ -63,19 +62,19 @@ fn a_click_says_what_is_sharp() {
     assert!(harness.query_by_label_contains("Nothing blurs").is_some());
     harness.set("f-number", 0.05);
     assert!(harness.query_by_label_contains("Nothing blurs").is_none());
-    settle(&mut harness);
+    harness.settle();
     let at_target = picture(&harness);
     assert_ne!(at_target, sharp);
     let far = number(&harness, "Focus distance");
     harness.tap_label("Pick focus");
     let center = harness.get_by_label("Viewport").rect().center();
     click_at(&mut harness, center);
-    settle(&mut harness);
+    harness.settle();
     let near = harness.document().camera.focus_distance.expect("it was picked");
     assert!(near < far && near > 0.3 * far, "{near} of {far}");
     assert_ne!(picture(&harness), at_target);
     // Ctrl does the same without the button.
-    undo(&mut harness);
+    harness.undo();
     assert_eq!(harness.document().camera.focus_distance, None);
     harness.event(egui::Event::ModifiersChanged(Modifiers::COMMAND));
     click_at(&mut harness, center);
@@ -100,7 +99,7 @@ fn lit_ball() -> Editor {
         document: Some(document),
         ..options()
     });
-    settle(&mut harness);
+    harness.settle();
     harness.reveal(Pane::Lighting);
     harness
 }
@@ -114,24 +113,18 @@ fn a_click_puts_a_lights_highlight_there() {
     harness.tap_label("Place highlight of area light 2");
     let center = harness.get_by_label("Viewport").rect().center();
     click_at(&mut harness, center);
-    settle(&mut harness);
+    harness.settle();
     let lights = harness.document().lighting.area_lights.clone();
     let camera = harness.document().camera;
     assert_eq!(lights[0].yaw_deg, 150.0, "the other stays");
     // The middle of a ball mirrors the viewer.
-    assert!(
-        (lights[1].yaw_deg - camera.yaw_deg).abs() < 2.0,
-        "{lights:?} {camera:?}"
-    );
-    assert!(
-        (lights[1].pitch_deg - camera.pitch_deg).abs() < 2.0,
-        "{lights:?} {camera:?}"
-    );
+    near!(lights[1].yaw_deg, camera.yaw_deg, 2.0);
+    near!(lights[1].pitch_deg, camera.pitch_deg, 2.0);
     assert!(brightness(&harness) > from_behind, "it is seen");
     // The next click chooses again.
     click_at(&mut harness, center + Vec2::new(12.0, 0.0));
     assert_eq!(harness.document().lighting.area_lights, lights);
-    undo(&mut harness);
+    harness.undo();
     assert_eq!(harness.document().lighting.area_lights[1].yaw_deg, 150.0);
 }
 
@@ -145,7 +138,7 @@ fn lights_are_muted_soloed_and_warmed() {
     let both = picture(&harness);
     let press = |harness: &mut Editor, label: &str| {
         harness.tap_label(label);
-        settle(harness);
+        harness.settle();
         picture(harness)
     };
     let one = press(&mut harness, "Mute area light 1");
@@ -162,14 +155,14 @@ fn lights_are_muted_soloed_and_warmed() {
     assert_eq!(all, both);
     harness.tap_label("Choose area light 1");
     harness.set("Area light 1 temperature", 2700.0);
-    settle(&mut harness);
+    harness.settle();
     let [red, green, blue] = harness.document().lighting.area_lights[0].color;
     assert!(
         red == 1.0 && green < 0.8 && blue < 0.4 && blue > 0.05,
         "{red} {green} {blue}"
     );
-    assert!((number(&harness, "Area light 1 temperature") - 2700.0).abs() < 1.0);
-    undo(&mut harness);
+    near!(number(&harness, "Area light 1 temperature"), 2700.0, 1.0);
+    harness.undo();
     assert_eq!(harness.document().lighting.area_lights[0].color, [1.0; 3]);
 }
 
@@ -181,7 +174,7 @@ fn a_click_in_the_viewport_gives_its_angle_to_the_plots() {
         document: Some(document),
         ..options()
     });
-    settle(&mut harness);
+    harness.settle();
     harness.reveal(Pane::Samples);
     harness.tap_label("Pick angle");
     let center = harness.get_by_label("Viewport").rect().center();
@@ -228,7 +221,7 @@ fn the_part_below_a_dragged_preset_is_named() {
     assert!(harness.query_by_label_contains("Drop on ").is_some());
     harness.drop_at(to);
     harness.run_steps(3);
-    assert_eq!(harness.document().materials[0].name, "Plastic blue");
+    assert_eq!(harness.material().name, "Plastic blue");
     assert!(harness.query_by_label_contains("Drop on ").is_none());
 }
 
@@ -241,7 +234,7 @@ fn charts_and_menus_fit_the_window() {
         let charts = [(Pane::Samples, "The samples"), (Pane::Curve, "The curve D over ξ")];
         for (pane, chart) in charts {
             harness.reveal(pane);
-            see_label(&mut harness, chart);
+            harness.see_label(chart);
             let bottom = harness.get_by_label(chart).rect().bottom();
             assert!(bottom < height - 28.0, "{chart}: {bottom} of {height}");
         }

@@ -7,10 +7,9 @@ use glossmith::{app::actions::Action, document::Document, scene::ModelSource, st
 use serde_json::Value as Json;
 
 use super::{
-    gltf_builder::Folder,
-    ui::{Editor, editor, request, see_label, wait},
+    cli_support::Workplace,
+    ui::{Editor, editor},
     ui_files::says,
-    ui_hands::{Hands as _, press},
 };
 
 const QUESTION: &str = "Read files from elsewhere?";
@@ -22,8 +21,8 @@ fn asks(harness: &mut Editor) -> bool {
 }
 
 /// A model, and a folder two below it.
-fn place() -> (Folder, PathBuf, PathBuf) {
-    let folder = Folder::new();
+fn place() -> (Workplace, PathBuf, PathBuf) {
+    let folder = Workplace::new();
     let inner = folder.path("a/b");
     std::fs::create_dir_all(&inner).unwrap();
     let model = folder.path("far.obj");
@@ -42,10 +41,8 @@ fn a_project_from_elsewhere_is_asked_about_once_and_ones_own_never() {
     let own = inner.join("own.json");
     save_document(&own, &document).unwrap();
     let mut harness = editor();
-    request(&mut harness, Action::Open(own.clone()));
-    wait(&mut harness, "one's own project", |app| {
-        app.document().model == document.model
-    });
+    harness.request(Action::Open(own.clone()));
+    harness.wait("one's own project", |app| app.document().model == document.model);
     assert!(!asks(&mut harness));
     drop(harness);
     // As an older version saved it: without the mark.
@@ -55,26 +52,22 @@ fn a_project_from_elsewhere_is_asked_about_once_and_ones_own_never() {
     std::fs::write(&old, text.to_string()).unwrap();
     let mut harness = editor();
     let before = harness.document().clone();
-    request(&mut harness, Action::Open(old.clone()));
-    see_label(&mut harness, QUESTION);
+    harness.request(Action::Open(old.clone()));
+    harness.see_label(QUESTION);
     harness.check_accessibility();
     assert!(harness.query_all_by_label_contains("far.obj").count() > 0);
-    press(&mut harness, "Deny");
+    harness.press("Deny");
     assert_eq!(*harness.document(), before);
     assert!(says(&harness, "--allow-outside"));
     drop(harness);
     let mut harness = editor();
-    request(&mut harness, Action::Open(old.clone()));
-    see_label(&mut harness, QUESTION);
-    press(&mut harness, "Allow");
-    wait(&mut harness, "the old project", |app| {
-        app.document().model == document.model
-    });
+    harness.request(Action::Open(old.clone()));
+    harness.see_label(QUESTION);
+    harness.press("Allow");
+    harness.wait("the old project", |app| app.document().model == document.model);
     // Asked once: not of this window, and not of the next.
     let mut next = editor();
-    request(&mut next, Action::Open(old));
-    wait(&mut next, "the old project", |app| {
-        app.document().model == document.model
-    });
+    next.request(Action::Open(old));
+    next.wait("the old project", |app| app.document().model == document.model);
     assert!(!asks(&mut next) && !asks(&mut harness));
 }

@@ -5,8 +5,7 @@ use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use glossmith::{app::actions::Command, app::layout::Pane, document::Document, document::Strategy, scene::ModelSource};
 
 use super::{
-    ui::{Editor, editor_of, options, see, see_label, settle, undo, wait},
-    ui_hands::Hands as _,
+    ui::{Editor, editor_of, options},
     worker::small_document,
 };
 
@@ -18,7 +17,7 @@ fn sphere() -> Document {
 }
 
 /// Has the strategies alone race, for so many seconds each.
-pub(super) fn race_strategies(harness: &mut Editor, seconds_each: f64) {
+pub fn race_strategies(harness: &mut Editor, seconds_each: f64) {
     race_kinds(harness, &["Bounces", "Fresnel term"], seconds_each);
 }
 
@@ -38,7 +37,7 @@ fn sphere_editor() -> Editor {
         document: Some(sphere()),
         ..options()
     });
-    settle(&mut harness);
+    harness.settle();
     harness
 }
 
@@ -46,14 +45,14 @@ fn sphere_editor() -> Editor {
 fn a_race_is_run_and_its_winner_taken() {
     let mut harness = sphere_editor();
     race_strategies(&mut harness, 0.05);
-    see_label(&mut harness, "Use Light sampling only");
+    harness.see_label("Use Light sampling only");
     assert!(harness.has("Time against bias"), "the chart is shown");
     assert_eq!(harness.document().render.strategy, Strategy::Mis);
     harness.tap_label("Equal error");
     harness.get_by_label("Use Light sampling only").click_accesskit();
-    settle(&mut harness);
+    harness.settle();
     assert_eq!(harness.document().render.strategy, Strategy::Light);
-    undo(&mut harness);
+    harness.undo();
     assert_eq!(harness.document().render.strategy, Strategy::Mis);
 }
 
@@ -70,9 +69,9 @@ fn racing(seconds: f64) -> Editor {
 fn a_race_can_be_stopped() {
     let mut harness = racing(300.0);
     harness.get_by_label("Stop").click_accesskit();
-    see_label(&mut harness, "Run the race");
+    harness.see_label("Run the race");
     // The viewport renders again.
-    wait(&mut harness, "a finished picture", glossmith::app::App::is_settled);
+    harness.wait("a finished picture", glossmith::app::App::is_settled);
 }
 
 #[test]
@@ -86,12 +85,12 @@ fn the_ledger_is_measured_on_demand() {
     harness.state_mut().reveal(Pane::Effects);
     if cfg!(not(feature = "thorough")) {
         // It takes two seconds for each effect.
-        see_label(&mut harness, "Stop");
+        harness.see_label("Stop");
         harness.get_by_label("Stop").click_accesskit();
-        see_label(&mut harness, "Stopped.");
+        harness.see_label("Stopped.");
         return;
     }
-    see(&mut harness, "the ledger", |harness| {
+    harness.see("the ledger", |harness| {
         let line = "Schlick's Fresnel (instead of exact): ";
         harness.query_by_label_contains(line).is_some()
     });

@@ -13,29 +13,28 @@ use glossmith::{
 use image::{Rgba, RgbaImage};
 
 use super::{
-    gltf_builder::Folder,
-    ui::{Editor, editor_of, editor_with, options, picture, see_label, settle, undo, wait},
-    ui_files::{drop_on, says},
-    ui_hands::Hands as _,
+    cli_support::Workplace,
+    ui::{Editor, editor_of, editor_with, options, picture},
+    ui_files::says,
     worker::small_document,
 };
 
 /// The editor on a sphere, with paths typed into a field.
-fn on_a_sphere(folder: &Folder) -> Editor {
+fn on_a_sphere(folder: &Workplace) -> Editor {
     let document = Document {
         model: ModelSource::Sphere,
         ..small_document()
     };
     let mut harness = editor_of(Options {
         document: Some(document),
-        typed_paths: Some(folder.0.path().to_owned()),
+        typed_paths: Some(folder.root().to_owned()),
         ..options()
     });
-    settle(&mut harness);
+    harness.settle();
     harness
 }
 
-fn write(folder: &Folder, name: &str) -> std::path::PathBuf {
+fn write(folder: &Workplace, name: &str) -> std::path::PathBuf {
     let path = folder.path(name);
     std::fs::create_dir_all(path.parent().unwrap()).unwrap();
     let texels = |x: u32, y: u32| Rgba([(90 * x) as u8, (90 * y) as u8, 200, 255]);
@@ -44,7 +43,7 @@ fn write(folder: &Folder, name: &str) -> std::path::PathBuf {
 }
 
 fn own(harness: &Editor, target: TextureTarget) -> Option<UserTexture> {
-    harness.document().materials[0].user_textures.get(target).cloned()
+    harness.material().user_textures.get(target).cloned()
 }
 
 fn click(harness: &mut Editor, role: Role, label: &str) {
@@ -54,65 +53,65 @@ fn click(harness: &mut Editor, role: Role, label: &str) {
 
 #[test]
 fn a_texture_is_chosen_placed_and_removed() {
-    let folder = Folder::new();
+    let folder = Workplace::new();
     let file = write(&folder, "any.png");
     let mut harness = on_a_sphere(&folder);
     let plain = picture(&harness);
     let before = harness.document().clone();
     click(&mut harness, Role::Button, "Texture of the base colour");
-    see_label(&mut harness, "Choose a texture");
+    harness.see_label("Choose a texture");
     harness.write("Path", file.to_str().unwrap());
     click(&mut harness, Role::Button, "Open");
-    wait(&mut harness, "the texture", |app| {
+    harness.wait("the texture", |app| {
         app.document().materials[0]
             .user_textures
             .get(TextureTarget::BaseColor)
             .is_some()
     });
-    settle(&mut harness);
+    harness.settle();
     let textured = picture(&harness);
     assert!(textured != plain);
     assert_eq!(own(&harness, TextureTarget::BaseColor), Some(UserTexture::of(file)));
     // Its switch, its placement.
     click(&mut harness, Role::CheckBox, "Base colour texture");
-    settle(&mut harness);
+    harness.settle();
     assert!(picture(&harness) != textured && own(&harness, TextureTarget::BaseColor).is_some());
-    undo(&mut harness);
+    harness.undo();
     assert!(picture(&harness) == textured);
     harness
         .get_by_label("Placement of the base colour texture")
         .click_accesskit();
     // It unfolds by and by.
-    see_label(&mut harness, "Base colour texture rotation");
+    harness.see_label("Base colour texture rotation");
     harness.run_steps(20);
     let value = |harness: &mut Editor, label: &str, value: f64| {
         let row = harness.get_by_role_and_label(Role::SpinButton, label);
         row.set_value_accesskit(value);
-        settle(harness);
+        harness.settle();
     };
     value(&mut harness, "Base colour texture rotation", 45.0);
     value(&mut harness, "Base colour texture scale", 3.0);
     let placed = own(&harness, TextureTarget::BaseColor).unwrap();
     assert_eq!((placed.rotation_deg, placed.scale), (45.0, 3.0));
     assert!(picture(&harness) != textured);
-    undo(&mut harness);
-    undo(&mut harness);
+    harness.undo();
+    harness.undo();
     assert!(picture(&harness) == textured);
     // Taken off by its menu, and brought back.
     click(&mut harness, Role::Button, "Menu of the base colour texture");
     click(&mut harness, Role::Button, "Remove");
-    settle(&mut harness);
+    harness.settle();
     assert_eq!(own(&harness, TextureTarget::BaseColor), None);
-    undo(&mut harness);
+    harness.undo();
     assert!(own(&harness, TextureTarget::BaseColor).is_some());
-    undo(&mut harness);
+    harness.undo();
     assert_eq!(*harness.document(), before);
 }
 
 /// The pictures of a set go where their names say, in one edit; by files and by their folder.
 #[test]
 fn a_set_is_dropped_at_once() {
-    let folder = Folder::new();
+    let folder = Workplace::new();
     let names = [
         "wood/wood_basecolor.png",
         "wood/wood_rough.png",
@@ -123,8 +122,8 @@ fn a_set_is_dropped_at_once() {
     let mut harness = on_a_sphere(&folder);
     let before = harness.document().clone();
     for dropped in [files.to_vec(), vec![folder.path("wood")]] {
-        drop_on(&mut harness, &dropped);
-        settle(&mut harness);
+        harness.drop_on(&dropped);
+        harness.settle();
         assert_eq!(own(&harness, TextureTarget::BaseColor).unwrap().file, files[0]);
         assert_eq!(own(&harness, TextureTarget::Roughness).unwrap().file, files[1]);
         let normal = own(&harness, TextureTarget::Normal).unwrap();
@@ -134,7 +133,7 @@ fn a_set_is_dropped_at_once() {
             "{:?}",
             harness.state().messages()
         );
-        undo(&mut harness);
+        harness.undo();
         assert_eq!(*harness.document(), before);
     }
 }
@@ -142,7 +141,7 @@ fn a_set_is_dropped_at_once() {
 /// What is missing is told at its row, and all else goes on.
 #[test]
 fn a_missing_texture_is_told() {
-    let folder = Folder::new();
+    let folder = Workplace::new();
     let mut document = Document {
         model: ModelSource::Sphere,
         ..small_document()
@@ -152,8 +151,8 @@ fn a_missing_texture_is_told() {
     let gone = UserTexture::of(folder.path("gone.png"));
     document.materials[0].put_texture(TextureTarget::Roughness, gone);
     let mut harness = editor_with(document, Vec::new());
-    settle(&mut harness);
-    see_label(&mut harness, "gone.png: missing");
+    harness.settle();
+    harness.see_label("gone.png: missing");
     assert!(harness.query_all_by_label("here.png").count() > 0);
 }
 

@@ -9,8 +9,8 @@ use glossmith::{
 };
 
 use super::{
-    ui::{Editor, editor, editor_of, editor_with, options, picture, see, settle, undo},
-    ui_hands::{Hands as _, type_path},
+    cli_support::Workplace,
+    ui::{Editor, editor, editor_of, editor_with, options, picture},
     worker::small_document,
 };
 
@@ -26,7 +26,7 @@ fn keys_look_from_the_sides_in_parallel_rays() {
     harness.run_steps(2);
     for (key, yaw_deg, pitch_deg) in [(Key::Num1, 0.0, 0.0), (Key::Num3, 90.0, 0.0), (Key::Num7, 0.0, 90.0)] {
         harness.key_press(key);
-        settle(&mut harness);
+        harness.settle();
         let camera = camera(&harness);
         assert_eq!(
             (camera.yaw_deg, camera.pitch_deg, camera.projection),
@@ -35,7 +35,7 @@ fn keys_look_from_the_sides_in_parallel_rays() {
         assert_ne!(picture(&harness), shown);
     }
     harness.key_press(Key::Num5);
-    settle(&mut harness);
+    harness.settle();
     assert_eq!(camera(&harness).projection, Projection::Perspective);
     // And by its row.
     harness.reveal(Pane::Camera);
@@ -43,10 +43,10 @@ fn keys_look_from_the_sides_in_parallel_rays() {
     harness
         .get_by_role_and_label(Role::Button, "Orthographic")
         .click_accesskit();
-    settle(&mut harness);
+    harness.settle();
     assert_eq!(camera(&harness).projection, Projection::Orthographic);
     for _ in 0..5 {
-        undo(&mut harness);
+        harness.undo();
     }
     assert_eq!(*harness.document(), before);
     assert_eq!(picture(&harness), shown);
@@ -65,7 +65,7 @@ fn lit() -> Editor {
         ..AreaLight::default()
     }];
     let mut harness = editor_with(document, Vec::new());
-    settle(&mut harness);
+    harness.settle();
     harness.reveal(Pane::Lighting);
     harness
 }
@@ -77,11 +77,11 @@ fn a_light_is_hidden_from_the_camera_by_its_row() {
     harness
         .get_by_role_and_label(Role::CheckBox, "Area light 1 hidden from camera")
         .click_accesskit();
-    settle(&mut harness);
+    harness.settle();
     assert!(harness.document().lighting.area_lights[0].is_hidden);
     let brightest = |pixels: &[[f32; 4]]| pixels.iter().map(|pixel| pixel[1]).fold(0.0, f32::max);
     assert!(brightest(&shown) >= 5.0 && brightest(&picture(&harness)) < brightest(&shown));
-    undo(&mut harness);
+    harness.undo();
     assert_eq!(*harness.document(), before);
     assert_eq!(picture(&harness), shown);
 }
@@ -89,32 +89,30 @@ fn a_light_is_hidden_from_the_camera_by_its_row() {
 /// A photograph is chosen, shown under, over and beside the render, and taken away; the render is no other one.
 #[test]
 fn a_reference_picture_is_shown_under_over_and_beside_the_render() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let file = folder.path().join("photo.png");
+    let folder = Workplace::new();
+    let file = folder.path("photo.png");
     image::RgbImage::from_pixel(8, 4, image::Rgb([200, 30, 30]))
         .save(&file)
         .expect("a temporary file");
     let mut harness = editor_of(Options {
-        typed_paths: Some(folder.path().to_owned()),
+        typed_paths: Some(folder.root().to_owned()),
         ..options()
     });
-    settle(&mut harness);
+    harness.settle();
     let (before, shown) = (harness.document().clone(), picture(&harness));
     harness.reveal(Pane::Camera);
     harness.get_by_label("Reference image").click_accesskit();
-    type_path(&mut harness, &file, "Open");
+    harness.type_path(&file, "Open");
     let named = |harness: &Editor, place: &str| {
         let name = format!("Reference image {place} the render");
         harness.query_by_label(&name).map(|picture| picture.rect())
     };
-    see(&mut harness, "it under the render", |harness| {
-        named(harness, "under").is_some()
-    });
+    harness.see("it under the render", |harness| named(harness, "under").is_some());
     let viewport = harness.get_by_label("Viewport").rect();
     for (choice, place) in [("Over the render", "over"), ("Beside the render", "beside")] {
         harness.tap(Role::ComboBox, "Place of the reference");
         harness.get_by_role_and_label(Role::Button, choice).click_accesskit();
-        see(&mut harness, choice, |harness| named(harness, place).is_some());
+        harness.see(choice, |harness| named(harness, place).is_some());
     }
     let (now, beside) = (
         harness.get_by_label("Viewport").rect(),
@@ -125,13 +123,13 @@ fn a_reference_picture_is_shown_under_over_and_beside_the_render() {
         "{now:?} and {beside:?}"
     );
     harness.set("Opacity of the reference", 0.5);
-    settle(&mut harness);
+    harness.settle();
     let reference = harness.document().view.reference.clone().expect("it was chosen");
     assert_eq!((reference.file, reference.opacity), (file, 0.5));
     assert_eq!(picture(&harness), shown, "it is no part of the render");
     harness.tap_label("Remove the reference image");
     assert_eq!(*harness.document(), before);
     assert_eq!(harness.get_by_label("Viewport").rect(), viewport);
-    undo(&mut harness);
+    harness.undo();
     assert!(harness.document().view.reference.is_some());
 }

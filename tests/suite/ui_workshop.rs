@@ -1,8 +1,7 @@
 //! What must not stand in the way of who works at the window: charts that can be read, a bar that fits, checks that can be
 //! stopped, measurements that say when they are old, the engine that was chosen.
 
-use super::ui::{Memory, editor, editor_of, editor_remembering, options, see, see_label, settle, wait};
-use super::ui_hands::Hands as _;
+use super::ui::{Memory, editor, editor_of, editor_remembering, options};
 use eframe::App as _;
 use egui::accesskit::{Role, Toggled};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
@@ -18,10 +17,10 @@ fn the_engine_chosen_in_the_menu_is_remembered() {
         engine: EngineChoice::Gpu,
         ..options()
     });
-    settle(&mut harness);
+    harness.settle();
     harness.click(Role::Button, "Render");
     harness.click(Role::RadioButton, "Engine: CPU");
-    settle(&mut harness);
+    harness.settle();
     let mut memory = Memory::default();
     harness.state_mut().save(&mut memory);
     drop(harness);
@@ -33,7 +32,7 @@ fn the_engine_chosen_in_the_menu_is_remembered() {
             ..options()
         },
     );
-    settle(&mut harness);
+    harness.settle();
     let engine = harness.state().snapshot().engine.clone().expect("it renders");
     assert_eq!(
         (engine.kind, engine.reason.as_str()),
@@ -50,19 +49,19 @@ fn a_check_can_be_stopped_and_leaves_the_viewport_its_time() {
     let mut harness = editor();
     harness.reveal(Pane::Check);
     harness.get_by_label("Check this machine").click_accesskit();
-    see_label(&mut harness, "Checking samples against densities …");
+    harness.see_label("Checking samples against densities …");
     harness.command(Command::Restart);
-    wait(&mut harness, "a picture beside the check", App::is_settled);
-    see(&mut harness, "what is left of it", |harness| {
+    harness.wait("a picture beside the check", App::is_settled);
+    harness.see("what is left of it", |harness| {
         harness
             .query_all_by_label_contains("against densities … ")
             .next()
             .is_some()
     });
     harness.get_by_label("Stop").click_accesskit();
-    see_label(&mut harness, "Stopped.");
+    harness.see_label("Stopped.");
     // The word comes a moment before the thread is free.
-    see_label(&mut harness, "Check this machine");
+    harness.see_label("Check this machine");
 }
 
 /// The benchmark's section of *Check*: a quick run shows a table of the engines and hands on its result.
@@ -73,7 +72,7 @@ fn the_benchmark_is_run_in_its_section() {
     harness.reveal(Pane::Check);
     harness.tap(Role::CheckBox, "Quick");
     harness.get_by_label("Run the benchmark").click_accesskit();
-    see(&mut harness, "the result", |harness| harness.has("Copy the result"));
+    harness.see("the result", |harness| harness.has("Copy the result"));
     harness.get_by_label("Run the benchmark");
     for what in ["samples, default", "rays, default"] {
         assert!(
@@ -82,7 +81,7 @@ fn the_benchmark_is_run_in_its_section() {
         );
     }
     // The viewport goes on.
-    wait(&mut harness, "the picture", App::is_settled);
+    harness.wait("the picture", App::is_settled);
 }
 
 #[test]

@@ -14,8 +14,11 @@ use glossmith::{
     store::{PRESETS, examples::still_life, load_document, save_document},
 };
 
-use super::ui::{Editor, Memory, editor_of, editor_remembering, options, request, settle, undo, wait};
-use super::ui_hands::Hands as _;
+use super::{
+    cli_support::Workplace,
+    renders::adjust,
+    ui::{Editor, Memory, editor_of, editor_remembering, options},
+};
 
 /// An editor as a user starts it.
 fn at_first() -> Editor {
@@ -26,7 +29,7 @@ fn at_first() -> Editor {
             ..options()
         },
     );
-    settle(&mut harness);
+    harness.settle();
     harness
 }
 
@@ -83,12 +86,9 @@ fn a_workspace_of_ones_own_is_saved_and_removed() {
     assert!(harness.has("Workspace Shots"), "it is shown");
     use_workspace(&mut harness, LOOK);
     assert!(harness.query_all_by_label(Pane::Log.title()).next().is_none());
-    request(&mut harness, Action::ChangeWorkspaces(Change::Use("Shots".to_owned())));
+    harness.request(Action::ChangeWorkspaces(Change::Use("Shots".to_owned())));
     assert!(harness.query_all_by_label(Pane::Log.title()).next().is_some());
-    request(
-        &mut harness,
-        Action::ChangeWorkspaces(Change::Remove("Shots".to_owned())),
-    );
+    harness.request(Action::ChangeWorkspaces(Change::Remove("Shots".to_owned())));
     assert!(!harness.has("Workspace Shots"));
     assert!(harness.has("Workspace Look"));
 }
@@ -96,33 +96,29 @@ fn a_workspace_of_ones_own_is_saved_and_removed() {
 /// The start and *New* show the still life; it is a project like any other, and its parts are objects.
 #[test]
 fn the_start_and_new_show_the_still_life() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
+    let folder = Workplace::new();
     let mut first = still_life();
-    (first.render.width, first.render.height, first.render.samples) = (48, 32, 2);
+    adjust(&mut first, "render.width=48 render.height=32 render.samples=2");
     let mut harness = editor_of(Options {
         engine: EngineChoice::Cpu,
         document: Some(first.clone()),
         resolution: Some(Resolution::Document),
         ..Options::default()
     });
-    settle(&mut harness);
+    harness.settle();
     let scene = harness.state().snapshot().scene.clone().expect("it was waited for");
     let names: Vec<&str> = scene.model.objects.iter().map(|object| object.name.as_str()).collect();
     assert_eq!(names, ["teapot", "bowl", "ball", "bead"]);
     assert_eq!(first.materials.len(), scene.model.slots.len());
-    let path = folder.path().join("still.json");
+    let path = folder.path("still.json");
     save_document(&path, &first).expect("a temporary file");
     assert_eq!(load_document(&path).expect("a project").value, first);
     // A way to one's own model is in sight, until there is one.
     assert!(harness.has("Open your model…"));
-    request(&mut harness, Action::UseModel(ModelSource::Sphere));
-    wait(&mut harness, "another model", |app| {
-        app.document().model == ModelSource::Sphere
-    });
-    request(&mut harness, Action::UseModel(ModelSource::StillLife));
-    wait(&mut harness, "the still life", |app| {
-        app.document().model == ModelSource::StillLife
-    });
+    harness.request(Action::UseModel(ModelSource::Sphere));
+    harness.wait("another model", |app| app.document().model == ModelSource::Sphere);
+    harness.request(Action::UseModel(ModelSource::StillLife));
+    harness.wait("the still life", |app| app.document().model == ModelSource::StillLife);
     assert_eq!(harness.document().materials, first.materials);
 }
 
@@ -131,10 +127,10 @@ fn the_start_and_new_show_the_still_life() {
 fn comparing_begins_with_what_one_had() {
     let mut harness = at_first();
     let before = harness.document().materials.clone();
-    request(&mut harness, Action::UseMaterial(Box::new(PRESETS[5].clone())));
-    settle(&mut harness);
+    harness.request(Action::UseMaterial(Box::new(PRESETS[5].clone())));
+    harness.settle();
     harness.command(Command::Compare);
-    wait(&mut harness, "B", |app| {
+    harness.wait("B", |app| {
         app.rival_snapshot().is_some_and(|rival| rival.picture.is_some())
     });
     let rival = harness.state().rival_snapshot().and_then(|rival| rival.picture.clone());
@@ -149,12 +145,12 @@ fn a_metal_is_edited_by_colours_or_as_measured() {
         .iter()
         .find(|preset| preset.name == "Gold")
         .expect("it is shipped");
-    request(&mut harness, Action::UseMaterial(Box::new(gold.clone())));
+    harness.request(Action::UseMaterial(Box::new(gold.clone())));
     harness.run_steps(3);
-    let material = |harness: &Editor| harness.document().materials[0].clone();
+    let material = |harness: &Editor| harness.material().clone();
     let before = material(&harness);
     harness.get_by_label("Edit as colours").click_accesskit();
-    settle(&mut harness);
+    harness.settle();
     let colored = material(&harness);
     assert_eq!(colored, before.by_colors());
     assert!(
@@ -165,10 +161,10 @@ fn a_metal_is_edited_by_colours_or_as_measured() {
     assert!(harness.has("Specular edge tint"), "the second colour");
     harness.tap_label("Measured metal…");
     harness.get_by_role_and_label(Role::Button, "copper").click_accesskit();
-    settle(&mut harness);
+    harness.settle();
     assert_ne!(material(&harness), colored);
-    undo(&mut harness);
+    harness.undo();
     assert_eq!(material(&harness), colored);
-    undo(&mut harness);
+    harness.undo();
     assert_eq!(material(&harness), before);
 }

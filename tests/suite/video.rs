@@ -1,5 +1,6 @@
 //! Videos are played back frame by frame.
 
+use crate::cli_support::Workplace;
 use std::path::Path;
 
 use glossmith::store::video::Video;
@@ -33,8 +34,8 @@ fn difference(a: &[u8], b: &[u8]) -> f64 {
 
 #[test]
 fn an_mp4_is_played_back_frame_by_frame() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join("turn.mp4");
+    let folder = Workplace::new();
+    let path = folder.path("turn.mp4");
     written(&path, 25.0);
     let bytes = std::fs::read(&path).expect("the file");
     let mut demuxer = Mp4FileDemuxer::new();
@@ -43,7 +44,7 @@ fn an_mp4_is_played_back_frame_by_frame() {
         data: &bytes,
     });
     let seconds = demuxer.tracks().expect("tracks")[0].duration as f64 / 25e3;
-    assert!((seconds - 0.16).abs() < 1e-9, "{seconds} s");
+    near!(seconds, 0.16, 1e-9);
     let mut decoder = Decoder::new().expect("a decoder");
     let mut number = 0;
     while let Some(sample) = demuxer.next_sample().expect("a sample") {

@@ -1,5 +1,6 @@
 //! The renderer's thread: what is submitted is shown, failures leave what was there.
 
+use crate::renders::adjust;
 use std::{sync::Arc, time::Duration, time::Instant};
 
 use glossmith::{
@@ -17,8 +18,10 @@ pub fn small_document() -> Document {
         model: ModelSource::Sphere,
         ..Document::default()
     };
-    (document.render.width, document.render.height, document.render.samples) = (40, 24, 3);
-    document.render.bounces = 3;
+    adjust(
+        &mut document,
+        "render.width=40 render.height=24 render.samples=3 render.bounces=3",
+    );
     document
 }
 
@@ -107,7 +110,7 @@ fn a_steady_stream_of_changes_is_shown_while_it_lasts() {
     let worker = worker();
     let mut document = small_document();
     // Large enough that a change every 3 ms never leaves time for a whole image.
-    (document.render.width, document.render.height) = (1600, 1000);
+    adjust(&mut document, "render.width=1600 render.height=1000");
     finished_first_look(&worker, worker.submit(&document, Pace::Still));
     let begun = Instant::now();
     let mut shown = 0;

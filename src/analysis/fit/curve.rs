@@ -17,7 +17,7 @@ const HATS: usize = 22;
 /// Solutions with corrected weights.
 const REWEIGHTINGS: usize = 5;
 /// Density per steradian below which differences do not matter more than others.
-const DENSITY_FLOOR: f64 = 1e-3;
+const DENSITY_FLOOR: f64 = 0.001;
 
 /// A target at the points of a grid, for one view.
 #[derive(Clone, Debug)]

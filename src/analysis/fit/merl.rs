@@ -31,15 +31,19 @@ pub struct Merl {
 #[derive(Debug, thiserror::Error)]
 pub enum MerlError {
     /// The system does not give it.
-    #[error("{}: cannot be read: {source}; check the path and its permissions", path.display())]
+    #[error("{path}: cannot be read: {source}; check the path and its permissions")]
     Read { path: PathBuf, source: std::io::Error },
     /// Not the three numbers that such a file begins with.
-    #[error("{}: not a MERL measurement: it does not begin with 90, 90, 180; choose a .binary file of the MERL BRDF database", path.display())]
+    #[error(
+        "{path}: not a MERL measurement: it does not begin with 90, 90, 180; choose a .binary file of the MERL BRDF database"
+    )]
     Header { path: PathBuf },
     /// Cut short, or too long.
-    #[error("{}: {length} bytes instead of {FILE_LENGTH}: cut short or not a MERL measurement; fetch the file again", path.display())]
+    #[error(
+        "{path}: {length} bytes instead of {FILE_LENGTH}: cut short or not a MERL measurement; fetch the file again"
+    )]
     Length { path: PathBuf, length: u64 },
-    #[error("{}: reflects nothing: every number is 0, negative or not finite; choose another file", path.display())]
+    #[error("{path}: reflects nothing: every number is 0, negative or not finite; choose another file")]
     Empty { path: PathBuf },
 }
 

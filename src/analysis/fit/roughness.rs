@@ -16,13 +16,13 @@ pub struct Nearest {
 /// Steps of the scan before the search, even in the logarithm of the roughness.
 const SCAN_STEPS: usize = 24;
 /// Relative accuracy of the roughness found.
-const ACCURACY: f64 = 1e-4;
+const ACCURACY: f64 = 0.0001;
 
 /// The roughness of `model` (its own is not read) that minimises the total variation distance to `target`, a profile
 /// for the view under `view_angle_rad` that looks the same on both sides of the plane of incidence.
 pub fn nearest_roughness(target: Profile, model: &LobeModel, view_angle_rad: f64, measure: Measure) -> Nearest {
     let distance = |roughness: f64| total_variation(target, &model.with_roughness(roughness), view_angle_rad, measure);
-    let low = roughness_min(model.lobe).max(1e-3);
+    let low = roughness_min(model.lobe).max(0.001);
     minimum([low, 1.0], SCAN_STEPS, ACCURACY, &distance)
 }
 

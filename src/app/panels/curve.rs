@@ -110,7 +110,7 @@ fn head(ui: &mut Ui, desk: &mut Desk, material: &mut crate::document::MaterialSe
 /// A custom curve through points of a named one, spread evenly along its line as the plot shows it: denser where it is
 /// steep.
 fn from_named(curve: Curve) -> CustomCurve {
-    let distance = |xi: f64| curve_distance(curve, &[], xi.min(1.0 - 1e-3)).clamp(0.0, f64::from(DISTANCE_MAX));
+    let distance = |xi: f64| curve_distance(curve, &[], xi.min(1.0 - 0.001)).clamp(0.0, f64::from(DISTANCE_MAX));
     let fine: Vec<[f64; 2]> = shares(FINE_STEPS).map(|xi| [xi, distance(xi)]).collect();
     let top = distance(1.0);
     let mut lengths = vec![0.0];

@@ -3,7 +3,6 @@
 use std::{
     path::{Path, PathBuf},
     sync::mpsc::{Receiver, Sender, channel},
-    thread::JoinHandle,
     time::{Duration, Instant},
 };
 
@@ -25,7 +24,6 @@ pub struct Autosave {
     /// `None` where nothing is saved for recovery.
     orders: Option<Sender<Order>>,
     reports: Option<Receiver<Report>>,
-    thread: Option<JoinHandle<()>>,
     interval: Duration,
     /// What the file is to hold.
     kept: Option<Document>,
@@ -64,7 +62,7 @@ impl Autosave {
         let (sender, reports) = channel();
         let witness = Witness::default();
         let its_witness = witness.clone();
-        let thread = std::thread::Builder::new().name("autosave".to_owned()).spawn(move || {
+        std::thread::Builder::new().name("autosave".to_owned()).spawn(move || {
             let report = |report| {
                 // Nobody listens where the window was closed meanwhile.
                 let _ = sender.send(report);
@@ -77,7 +75,6 @@ impl Autosave {
         Ok(Self {
             orders: Some(orders),
             reports: Some(reports),
-            thread: Some(thread),
             interval,
             kept: None,
             kept_at: None,
@@ -161,12 +158,9 @@ impl Drop for Autosave {
             return;
         }
         self.orders = None;
-        let begun = Instant::now();
-        while let Some(thread) = &self.thread
-            && !thread.is_finished()
-            && begun.elapsed() < FAREWELL
-        {
-            std::thread::sleep(Duration::from_millis(1));
+        // The thread drops the other end when it is done.
+        if let Some(reports) = &self.reports {
+            while reports.recv_timeout(FAREWELL).is_ok() {}
         }
     }
 }

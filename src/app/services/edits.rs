@@ -37,9 +37,8 @@ impl Edits {
 
     /// Takes the document as the frame left it; true where it changed.
     pub fn record(&mut self, document: &Document, is_dragging: bool) -> bool {
-        if !is_dragging && self.last_change.is_some_and(|at| at.elapsed() > PAUSE) {
+        if !is_dragging && !self.is_in_flow() {
             self.history.seal();
-            self.last_change = None;
         }
         let (label, key) = self.note.take().unwrap_or(("Edit".into(), "".into()));
         if self.history.current() == document {

@@ -19,13 +19,13 @@ pub struct Ready {
 pub fn ready(subject: &Subject, name: &str, path: &Path, format: &Registered) -> Result<Ready, String> {
     let mut prepared = exchange::prepare(subject, name, path, format).map_err(crate::in_words)?;
     let mut pictures: Vec<Option<Compared>> = Vec::new();
-    for (index, material) in prepared.report.materials.iter_mut().enumerate() {
-        let looks = material.looks.as_ref().filter(|_| index < COMPARED_MAX);
-        let of_both = looks.map(|looks| compared(looks)).transpose();
+    for material in prepared.report.materials.iter_mut().take(COMPARED_MAX) {
+        let of_both = material.looks.as_ref().map(|looks| compared(looks)).transpose();
         let of_both = of_both.map_err(crate::in_words)?;
         material.difference = of_both.as_ref().map(|compared| compared.difference);
         pictures.push(of_both);
     }
+    pictures.resize(prepared.report.materials.len(), None);
     Ok(Ready {
         prepared,
         compared: pictures,

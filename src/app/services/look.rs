@@ -47,8 +47,8 @@ impl Look {
     /// The pixel of an image of this size.
     pub fn pixel(&self, [width, height]: [u32; 2]) -> Option<[u32; 2]> {
         let [x, y] = self.at?;
-        let index = |share: f64, side: u32| ((share * f64::from(side)) as u32).min(side.saturating_sub(1));
-        (width > 0 && height > 0).then(|| [index(x, width), index(y, height)])
+        let index = |share: f64, side: u32| Some(((share * f64::from(side)) as u32).min(side.checked_sub(1)?));
+        Some([index(x, width)?, index(y, height)?])
     }
 }
 

@@ -338,7 +338,7 @@ impl Viewport {
                 [f64::from(x), f64::from(-y)]
             };
             orbit.turn(points(Modifiers::NONE));
-            orbit.pan(points(Modifiers::COMMAND).map(|p| 2e-3 * p));
+            orbit.pan(points(Modifiers::COMMAND).map(|p| 0.002 * p));
             for (key, factor) in [(Key::PageUp, 0.9), (Key::PageDown, 1.0 / 0.9)] {
                 if ui.input_mut(|input| input.consume_key(Modifiers::NONE, key)) {
                     orbit.zoom(factor);

@@ -85,7 +85,7 @@ pub struct BatchFile {
 fn text(value: &Value) -> String {
     match value {
         Value::String(text) => text.clone(),
-        Value::Array(list) => list.iter().map(text).collect::<Vec<_>>().join(","),
+        Value::Array(list) => crate::named::joined(list.iter().map(text), ","),
         Value::Integer(number) => number.to_string(),
         Value::Float(number) => number.to_string(),
         Value::Boolean(is_on) => is_on.to_string(),

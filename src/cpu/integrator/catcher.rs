@@ -67,9 +67,8 @@ impl<T: Single> Integrator<'_, T> {
         let shown = Vec3::select(is_transparent, Vec3::ONE, background);
         let albedo = self.materials[catcher.slot as usize].base_color;
         let is_lit = light.map(|light| T::ONE.masked(light.above_zero()));
-        let reflected = light * albedo + (Vec3::ONE - is_lit);
-        let kept = reflected.map(|light| T::ONE / light);
-        vertex.throughput = Vec3::select(is_mirrored, vertex.throughput, shown * is_lit * kept);
+        let kept = (light * albedo).map(|light| (T::ONE / light).masked(light.above_zero()));
+        vertex.throughput = Vec3::select(is_mirrored, vertex.throughput, shown * kept);
         let (backgrounds, alphas) = (background.to_each(), alpha.to_each());
         let (mirrors, gaps) = (is_mirrored.to_bits(), is_transparent.to_bits());
         members.for_each(&mut paths.catcher_hits, is_visible, |hit, lane| {

@@ -25,27 +25,26 @@ use crate::{
 };
 
 impl<T: Single> Integrator<'_, T> {
-    /// Coordinates of world directions in the environment map.
-    #[inline(always)]
-    fn world_environment_uv(&self, direction: Vec3<T>) -> [T; 2] {
-        environment_uv(environment_local_from_world(direction, self.rotation))
-    }
-
-    /// Radiance of the environment in the scene at map coordinates, strength included.
-    #[inline(always)]
-    fn world_environment_radiance(&self, uv: [T; 2]) -> Vec3<T> {
-        environment_radiance_at(self.environment, uv) * T::from_f64(self.settings.environment_strength)
-    }
-
-    /// The environment's radiance for escaped paths, times the MIS weight of BSDF sampling.
-    #[inline(always)]
-    pub fn weighted_environment<R: Recorder>(&self, ray: &PathVertex<T>, uv: [T; 2], paths: &mut Paths<R>) -> Vec3<T> {
-        let radiance = self.world_environment_radiance(uv);
-        let mut density = T::ZERO;
-        if self.samples_environment {
-            density = self.environment_probability * environment_density_at(self.distribution, uv);
+    inlined! {
+        /// Coordinates of world directions in the environment map.
+        fn world_environment_uv(&self, direction: Vec3<T>) -> [T; 2] {
+            environment_uv(environment_local_from_world(direction, self.rotation))
         }
-        self.mis_weighted(LightSource::Environment, radiance, density, ray, paths)
+
+        /// Radiance of the environment in the scene at map coordinates, strength included.
+        fn world_environment_radiance(&self, uv: [T; 2]) -> Vec3<T> {
+            environment_radiance_at(self.environment, uv) * T::from_f64(self.settings.environment_strength)
+        }
+
+        /// The environment's radiance for escaped paths, times the MIS weight of BSDF sampling.
+        pub fn weighted_environment<R: Recorder>(&self, ray: &PathVertex<T>, uv: [T; 2], paths: &mut Paths<R>) -> Vec3<T> {
+            let radiance = self.world_environment_radiance(uv);
+            let mut density = T::ZERO;
+            if self.samples_environment {
+                density = self.environment_probability * environment_density_at(self.distribution, uv);
+            }
+            self.mis_weighted(LightSource::Environment, radiance, density, ray, paths)
+        }
     }
 
     inlined! {
@@ -398,15 +397,15 @@ impl<T: Single> Integrator<'_, T> {
     }
 }
 
-/// Stores environment map coordinates.
-#[inline(always)]
-fn store_uv<T: Single>(group: &Group<T>, field: &mut [Vec<f32>; 2], uv: [T; 2]) {
-    group.set_number(&mut field[0], group.mask(), uv[0]);
-    group.set_number(&mut field[1], group.mask(), uv[1]);
-}
+inlined! {
+    /// Stores environment map coordinates.
+    fn store_uv<T: Single>(group: &Group<T>, field: &mut [Vec<f32>; 2], uv: [T; 2]) {
+        group.set_number(&mut field[0], group.mask(), uv[0]);
+        group.set_number(&mut field[1], group.mask(), uv[1]);
+    }
 
-/// Balance-heuristic weight of BSDF sampling (Veach 1997).
-#[inline(always)]
-fn mis_weight_lobe<T: Single>(lobe_density: T, light_density: T) -> T {
-    lobe_density / (lobe_density + light_density).max(T::from_f64(1e-30))
+    /// Balance-heuristic weight of BSDF sampling (Veach 1997).
+    fn mis_weight_lobe<T: Single>(lobe_density: T, light_density: T) -> T {
+        lobe_density / (lobe_density + light_density).max(T::from_f64(1e-30))
+    }
 }

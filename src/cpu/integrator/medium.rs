@@ -83,36 +83,36 @@ impl<T: Single> Integrator<'_, T> {
     }
 }
 
-/// Slots of the media that paths enter in direction `wi`.
-#[inline(always)]
-fn media_towards<T: Single, R: Recorder>(
-    point: &SurfacePoint<T>,
-    material: &Material<T>,
-    wi: Vec3<T>,
-    vertex: &PathVertex<T>,
-    paths: &Paths<R>,
-) -> T::Each<u32> {
-    let media = vertex.group.each(&paths.state.media);
-    let transmits = vertex.active & material.transmits();
-    if !transmits.any() {
-        return media;
+inlined! {
+    /// Slots of the media that paths enter in direction `wi`.
+    fn media_towards<T: Single, R: Recorder>(
+        point: &SurfacePoint<T>,
+        material: &Material<T>,
+        wi: Vec3<T>,
+        vertex: &PathVertex<T>,
+        paths: &Paths<R>,
+    ) -> T::Each<u32> {
+        let media = vertex.group.each(&paths.state.media);
+        let transmits = vertex.active & material.transmits();
+        if !transmits.any() {
+            return media;
+        }
+        let is_behind = point.surface.normal.dot(wi).below_zero();
+        let is_inside = point.surface.is_inside;
+        let stays = transmits & ((is_inside & !is_behind) | (!is_inside & is_behind));
+        let (stays, leaves) = (stays.to_bits(), (transmits & is_inside & is_behind).to_bits());
+        T::each(|lane| match (stays >> lane & 1, leaves >> lane & 1) {
+            (1, _) => point.slot,
+            (_, 1) => NO_MEDIUM,
+            _ => media[lane],
+        })
     }
-    let is_behind = point.surface.normal.dot(wi).below_zero();
-    let is_inside = point.surface.is_inside;
-    let stays = transmits & ((is_inside & !is_behind) | (!is_inside & is_behind));
-    let (stays, leaves) = (stays.to_bits(), (transmits & is_inside & is_behind).to_bits());
-    T::each(|lane| match (stays >> lane & 1, leaves >> lane & 1) {
-        (1, _) => point.slot,
-        (_, 1) => NO_MEDIUM,
-        _ => media[lane],
-    })
-}
 
-/// Beer–Lambert transmittance over a distance, per channel.
-#[inline(always)]
-fn transmittance_over<T: Single>(absorption: Vec3<T>, distance: T) -> Vec3<T> {
-    (absorption * distance).map(
-        #[inline(always)]
-        |thickness| (-thickness).exp(),
-    )
+    /// Beer–Lambert transmittance over a distance, per channel.
+    fn transmittance_over<T: Single>(absorption: Vec3<T>, distance: T) -> Vec3<T> {
+        (absorption * distance).map(
+            #[inline(always)]
+            |thickness| (-thickness).exp(),
+        )
+    }
 }

@@ -375,71 +375,70 @@ impl<'a, T: Single> Integrator<'a, T> {
         }
     }
 
-    /// Ends escaped paths that the shadow catcher mirrors: they show the camera's background.
-    #[inline(always)]
-    fn escape_mirrored<R: Recorder>(&self, members: &Members<T>, active: T::Mask, bounce: u32, paths: &mut Paths<R>) {
-        let background = Vec3::from_lanes(|lane| match paths.catcher_hits[members.path(lane)] {
-            CatcherHit::Mirrored { background, .. } => background,
-            _ => Vec3::ZERO,
-        });
-        self.add(members, active, Origin::Background, background, bounce, paths);
-        members.each_path(active, |path, _| {
-            if let CatcherHit::Mirrored { alpha, .. } = paths.catcher_hits[path] {
-                paths.outputs[path].alpha = alpha;
-            }
-        });
-    }
-
-    /// Adds a contribution after `reflections` bounces of the light, limited by the firefly clamp.
-    #[inline(always)]
-    fn add<R: Recorder>(
-        &self,
-        members: &Members<T>,
-        active: T::Mask,
-        origin: Origin<T>,
-        light: Vec3<T>,
-        reflections: u32,
-        paths: &mut Paths<R>,
-    ) {
-        let [added, clamped] = self.clamp_fireflies(light, reflections);
-        let radiances = added.to_each();
-        if self.light_groups > 0 {
-            let groups = origin.group().to_each();
-            members.each_path(active, |path, lane| {
-                paths.light_groups[path * self.light_groups + groups[lane] as usize] += radiances[lane];
+    inlined! {
+        /// Ends escaped paths that the shadow catcher mirrors: they show the camera's background.
+        fn escape_mirrored<R: Recorder>(&self, members: &Members<T>, active: T::Mask, bounce: u32, paths: &mut Paths<R>) {
+            let background = Vec3::from_lanes(|lane| match paths.catcher_hits[members.path(lane)] {
+                CatcherHit::Mirrored { background, .. } => background,
+                _ => Vec3::ZERO,
+            });
+            self.add(members, active, Origin::Background, background, bounce, paths);
+            members.each_path(active, |path, _| {
+                if let CatcherHit::Mirrored { alpha, .. } = paths.catcher_hits[path] {
+                    paths.outputs[path].alpha = alpha;
+                }
             });
         }
-        let outputs = &mut paths.outputs;
-        members.for_each(outputs, active, |path, lane| path.radiance += radiances[lane]);
-        if self.firefly_clamp.is_some() {
-            let clamped = clamped.luminance().to_each();
-            members.for_each(outputs, active, |path, lane| path.clamped += clamped[lane]);
-        }
-        members.record(outputs, active & light.is_any(), |lane| Event::Contribution {
-            source: origin.source(),
-            reflections,
-            found: light.lane(lane).to_f32(),
-            added: added.lane(lane).to_f32(),
-        });
-    }
 
-    /// A contribution's kept part and the part that the firefly clamp removes. Both are zero below `least_reflections`.
-    #[inline(always)]
-    fn clamp_fireflies(&self, contribution: Vec3<T>, reflections: u32) -> [Vec3<T>; 2] {
-        let nothing = Vec3::ZERO;
-        if reflections < self.settings.least_reflections {
-            return [nothing, nothing];
+        /// Adds a contribution after `reflections` bounces of the light, limited by the firefly clamp.
+        fn add<R: Recorder>(
+            &self,
+            members: &Members<T>,
+            active: T::Mask,
+            origin: Origin<T>,
+            light: Vec3<T>,
+            reflections: u32,
+            paths: &mut Paths<R>,
+        ) {
+            let [added, clamped] = self.clamp_fireflies(light, reflections);
+            let radiances = added.to_each();
+            if self.light_groups > 0 {
+                let groups = origin.group().to_each();
+                members.each_path(active, |path, lane| {
+                    paths.light_groups[path * self.light_groups + groups[lane] as usize] += radiances[lane];
+                });
+            }
+            let outputs = &mut paths.outputs;
+            members.for_each(outputs, active, |path, lane| path.radiance += radiances[lane]);
+            if self.firefly_clamp.is_some() {
+                let clamped = clamped.luminance().to_each();
+                members.for_each(outputs, active, |path, lane| path.clamped += clamped[lane]);
+            }
+            members.record(outputs, active & light.is_any(), |lane| Event::Contribution {
+                source: origin.source(),
+                reflections,
+                found: light.lane(lane).to_f32(),
+                added: added.lane(lane).to_f32(),
+            });
         }
-        let Some(limit) = self.firefly_clamp.filter(|_| reflections > 1) else {
-            return [contribution, nothing];
-        };
-        let largest = contribution.max_component();
-        let is_beyond = limit.less(largest);
-        let kept = limit / largest;
-        [
-            Vec3::select(is_beyond, contribution * kept, contribution),
-            Vec3::select(is_beyond, contribution * (T::ONE - kept), nothing),
-        ]
+
+        /// A contribution's kept part and the part that the firefly clamp removes. Both are zero below `least_reflections`.
+        fn clamp_fireflies(&self, contribution: Vec3<T>, reflections: u32) -> [Vec3<T>; 2] {
+            let nothing = Vec3::ZERO;
+            if reflections < self.settings.least_reflections {
+                return [nothing, nothing];
+            }
+            let Some(limit) = self.firefly_clamp.filter(|_| reflections > 1) else {
+                return [contribution, nothing];
+            };
+            let largest = contribution.max_component();
+            let is_beyond = limit.less(largest);
+            let kept = limit / largest;
+            [
+                Vec3::select(is_beyond, contribution * kept, contribution),
+                Vec3::select(is_beyond, contribution * (T::ONE - kept), nothing),
+            ]
+        }
     }
 }
 

@@ -7,10 +7,10 @@ use crate::{
 };
 
 /// How far below the view's cosine roughness must stay: the rounding of either.
-const MARGIN: f64 = 1e-3;
+const MARGIN: f64 = 0.001;
 
 /// The horizon policy that all lobes share; off if provably no sample is below the surface.
-pub(super) fn decide(facts: &Facts<'_>) -> Decision {
+pub fn decide(facts: &Facts<'_>) -> Decision {
     let crosses = |lobe: u32| !Lobe::ALL[lobe as usize].is_hemispherical();
     let shared = facts.shared(|m| m.horizon, |number| Horizon::ALL[number as usize].name());
     if facts.reflecting().all(|material| material.roughness == 0.0) {

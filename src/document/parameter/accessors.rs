@@ -70,7 +70,7 @@ macro_rules! own {
 pub(super) use {choice, color, field, own, rows, share, toggle};
 
 /// A field of a document that a [`Value`] stands for.
-pub(super) trait Field {
+pub trait Field {
     fn value(&self) -> Value;
     /// Nothing changes where the value is of another kind.
     fn take(&mut self, value: Value);

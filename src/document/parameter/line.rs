@@ -93,12 +93,12 @@ impl<T> Parameter<T> {
     }
 }
 
-pub(super) fn ends(range: RangeInclusive<f64>) -> [f64; 2] {
+pub fn ends(range: RangeInclusive<f64>) -> [f64; 2] {
     let (low, high) = range.into_inner();
     [low, high]
 }
 
-pub(super) fn real(range: RangeInclusive<f64>, unit: &'static str) -> Kind {
+pub fn real(range: RangeInclusive<f64>, unit: &'static str) -> Kind {
     Kind::Number {
         range: ends(range),
         unit,
@@ -107,7 +107,7 @@ pub(super) fn real(range: RangeInclusive<f64>, unit: &'static str) -> Kind {
 }
 
 /// A number in single precision, as its ends are.
-pub(super) fn single(range: RangeInclusive<f64>, unit: &'static str) -> Kind {
+pub fn single(range: RangeInclusive<f64>, unit: &'static str) -> Kind {
     Kind::Number {
         range: ends(range).map(|end| f64::from(end as f32)),
         unit,
@@ -115,7 +115,7 @@ pub(super) fn single(range: RangeInclusive<f64>, unit: &'static str) -> Kind {
     }
 }
 
-pub(super) fn count(range: RangeInclusive<f64>) -> Kind {
+pub fn count(range: RangeInclusive<f64>) -> Kind {
     Kind::Number {
         range: ends(range),
         unit: "",

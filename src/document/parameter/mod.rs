@@ -12,7 +12,7 @@ mod text;
 use serde_json::Value as Json;
 
 use super::{Document, MaterialSettings, custom_curve::CustomCurve};
-use crate::named::Named;
+use crate::named::{Named, joined};
 use crate::scene::texture::{TextureTarget, UserTexture};
 use text::shortened;
 
@@ -214,10 +214,10 @@ fn texture_parameter(key: &str) -> Result<&'static Parameter<UserTexture>, Param
     let found = TEXTURE_PARAMETERS.iter().find(|parameter| parameter.key == key);
     found.ok_or_else(|| ParameterError::UnknownKey {
         key: key.to_owned(),
-        hint: {
-            let keys: Vec<_> = TEXTURE_PARAMETERS.iter().map(|parameter| parameter.key).collect();
-            format!("the parameters of a texture are {}", keys.join(", "))
-        },
+        hint: format!(
+            "the parameters of a texture are {}",
+            joined(TEXTURE_PARAMETERS.iter().map(|parameter| parameter.key), ", ")
+        ),
     })
 }
 
@@ -237,7 +237,7 @@ fn unknown_key(key: &str) -> ParameterError {
         key: key.to_owned(),
         hint: match nearest_key(key) {
             Some(near) => format!("did you mean {near}?"),
-            None => format!("the parameters are {}", keys().collect::<Vec<_>>().join(", ")),
+            None => format!("the parameters are {}", joined(keys(), ", ")),
         },
     }
 }
@@ -411,10 +411,7 @@ impl<T> Parameter<T> {
             Value::Color([r, g, b]) | Value::Triple([r, g, b]) => format!("{r},{g},{b}"),
             Value::Choice(name) => (*name).to_owned(),
             Value::Toggle(on) => if *on { "on" } else { "off" }.to_owned(),
-            Value::Curve(points) => {
-                let points: Vec<_> = points.iter().map(|[xi, distance]| format!("{xi}:{distance}")).collect();
-                points.join(",")
-            }
+            Value::Curve(points) => joined(points.iter().map(|[xi, distance]| format!("{xi}:{distance}")), ","),
         }
     }
 

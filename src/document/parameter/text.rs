@@ -5,7 +5,9 @@ use std::{fmt::Write as _, str::FromStr};
 use serde_json::Value as Json;
 
 use super::{Choice, Kind, Parameter, Precision, Value, keys};
-use crate::{document::custom_curve::DISTANCE_MAX, optics::tone::linear_from_srgb, optics::vector::Vec3};
+use crate::{
+    document::custom_curve::DISTANCE_MAX, named::joined, optics::tone::linear_from_srgb, optics::vector::Vec3,
+};
 
 impl Kind {
     /// The value that a text says; `None` where it says none of this kind. Ranges are not looked at.
@@ -71,10 +73,7 @@ impl Kind {
             Kind::Optional { kind, word, .. } => format!("{}, or {word}", kind.expected()),
             Kind::Color { most } => format!("#rrggbb (sRGB) or r,g,b (linear, each from 0 to {most})"),
             Kind::Triple { range: [low, high] } => format!("r,g,b: three numbers, each from {low} to {high}"),
-            Kind::Choice(choices) => {
-                let names: Vec<_> = choices.iter().map(|choice| choice.name).collect();
-                format!("one of {}", names.join(", "))
-            }
+            Kind::Choice(choices) => format!("one of {}", joined(choices.iter().map(|choice| choice.name), ", ")),
             Kind::Toggle => "on or off".to_owned(),
             Kind::Curve => {
                 format!("points ξ:D,ξ:D,… such as 0:0,0.5:0.4,1:1, ξ from 0 to 1, D rising to at most {DISTANCE_MAX}")
@@ -101,7 +100,7 @@ impl Kind {
             Kind::Optional { kind, word, .. } => format!("{}|{word}", kind.placeholder()),
             Kind::Color { .. } => "#RRGGBB".to_owned(),
             Kind::Triple { .. } => "R,G,B".to_owned(),
-            Kind::Choice(choices) => choices.iter().map(|choice| choice.name).collect::<Vec<_>>().join("|"),
+            Kind::Choice(choices) => joined(choices.iter().map(|choice| choice.name), "|"),
             Kind::Toggle => "on|off".to_owned(),
             Kind::Curve => "ξ:D,…".to_owned(),
         }
@@ -158,13 +157,13 @@ impl<T> Parameter<T> {
 }
 
 /// A finite number; f32 that overflows counts as none.
-pub(super) fn parse_number<N: FromStr + Into<f64> + Copy>(text: &str) -> Option<N> {
+pub fn parse_number<N: FromStr + Into<f64> + Copy>(text: &str) -> Option<N> {
     let number: Option<N> = text.trim().parse().ok();
     number.filter(|x| (*x).into().is_finite())
 }
 
 /// Three numbers with commas between them.
-pub(super) fn parse_list<N: FromStr + Into<f64> + Copy>(text: &str) -> Option<[N; 3]> {
+pub fn parse_list<N: FromStr + Into<f64> + Copy>(text: &str) -> Option<[N; 3]> {
     let numbers: Option<Vec<N>> = text.split(',').map(parse_number).collect();
     numbers?.try_into().ok()
 }
@@ -193,7 +192,7 @@ fn parse_hex_color(text: &str) -> Option<[f32; 3]> {
     Some(linear_from_srgb(Vec3::<f64>::from_f64(srgb)).to_f32())
 }
 
-pub(super) fn parse_points(text: &str) -> Option<Vec<[f32; 2]>> {
+pub fn parse_points(text: &str) -> Option<Vec<[f32; 2]>> {
     let point = |text: &str| {
         let (xi, distance) = text.split_once(':')?;
         Some([parse_number(xi)?, parse_number(distance)?])
@@ -201,27 +200,27 @@ pub(super) fn parse_points(text: &str) -> Option<Vec<[f32; 2]>> {
     text.split(',').map(point).collect()
 }
 
-pub(super) fn choose(choices: &[Choice], name: &str) -> Option<Value> {
+pub fn choose(choices: &[Choice], name: &str) -> Option<Value> {
     let choice = choices.iter().find(|choice| choice.name == name)?;
     Some(Value::Choice(choice.name))
 }
 
-pub(super) fn json_number(json: &Json) -> Option<f32> {
+pub fn json_number(json: &Json) -> Option<f32> {
     json.as_f64().map(|x| x as f32).filter(|x| x.is_finite())
 }
 
-pub(super) fn json_numbers<const N: usize>(json: &Json) -> Option<[f32; N]> {
+pub fn json_numbers<const N: usize>(json: &Json) -> Option<[f32; N]> {
     let numbers: Option<Vec<f32>> = json.as_array()?.iter().map(json_number).collect();
     numbers?.try_into().ok()
 }
 
 /// The shortest number that reads back as the same f32.
-pub(super) fn json_from_number(x: f32) -> Json {
+pub fn json_from_number(x: f32) -> Json {
     Json::from(x.to_string().parse().unwrap_or(f64::from(x)))
 }
 
 /// At most 60 characters of what a user gave, for messages.
-pub(super) fn shortened(text: String) -> String {
+pub fn shortened(text: String) -> String {
     match text.char_indices().nth(60) {
         None => text,
         Some((end, _)) => {

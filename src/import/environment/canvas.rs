@@ -12,7 +12,7 @@ use crate::{
 
 /// A file to be read.
 #[derive(Clone, Copy)]
-pub(super) struct Source<'a> {
+pub struct Source<'a> {
     pub path: &'a Path,
     /// Encoding of display-referred images.
     pub encoding: EnvironmentEncoding,
@@ -23,54 +23,54 @@ pub(super) struct Source<'a> {
 
 impl Source<'_> {
     /// Contents of the file, counted against the budget.
-    pub(super) fn bytes(&self) -> Result<Vec<u8>, EnvironmentError> {
+    pub fn bytes(&self) -> Result<Vec<u8>, EnvironmentError> {
         let length = self.io(length(self.path))?;
         self.within(self.budget.take(length))?;
         self.io(read_watched(self.path, BYTES_MAX, self.loading))
     }
 
     /// The error for an exceeded budget.
-    pub(super) fn within(&self, taken: Result<(), OverBudget>) -> Result<(), EnvironmentError> {
+    pub fn within(&self, taken: Result<(), OverBudget>) -> Result<(), EnvironmentError> {
         let path = self.path.display();
         taken.map_err(|over| EnvironmentError::Refused(format!("the environment {path} is not loaded: {over}")))
     }
 
     /// The file system's answer, or the matching error.
-    pub(super) fn io<T>(&self, result: io::Result<T>) -> Result<T, EnvironmentError> {
+    pub fn io<T>(&self, result: io::Result<T>) -> Result<T, EnvironmentError> {
         result.map_err(|error| self.unreadable(error))
     }
 
     /// The file system refused.
-    pub(super) fn unreadable(&self, error: io::Error) -> EnvironmentError {
+    pub fn unreadable(&self, error: io::Error) -> EnvironmentError {
         let path = self.path.display();
         let remedy = "check the path and its permissions";
         EnvironmentError::Refused(format!("cannot read the environment {path}: {error}; {remedy}"))
     }
 
     /// An error that says this of the file.
-    pub(super) fn refused(&self, what: impl Display) -> EnvironmentError {
+    pub fn refused(&self, what: impl Display) -> EnvironmentError {
         EnvironmentError::Refused(format!("{} {what}", self.path.display()))
     }
 
     /// The decoder found a contradiction.
-    pub(super) fn damaged(&self, detail: impl Display) -> EnvironmentError {
+    pub fn damaged(&self, detail: impl Display) -> EnvironmentError {
         self.refused(format_args!(
             "is damaged: {detail}; copy or download it again, or re-save it"
         ))
     }
 
     /// The file ends too early.
-    pub(super) fn truncated(&self, detail: impl Display) -> EnvironmentError {
+    pub fn truncated(&self, detail: impl Display) -> EnvironmentError {
         self.refused(format_args!("is cut short: {detail}; copy or download it again"))
     }
 
     /// A valid file with an unsupported feature.
-    pub(super) fn unsupported(&self, feature: impl Display, remedy: &str) -> EnvironmentError {
+    pub fn unsupported(&self, feature: impl Display, remedy: &str) -> EnvironmentError {
         self.refused(format_args!("uses {feature}, which is not supported: {remedy}"))
     }
 
     /// The content does not match the ending.
-    pub(super) fn wrong(&self, expected: &str) -> EnvironmentError {
+    pub fn wrong(&self, expected: &str) -> EnvironmentError {
         self.refused(format_args!(
             "is not {expected} file although its name says so: its first bytes are different; check where it came from"
         ))
@@ -78,7 +78,7 @@ impl Source<'_> {
 }
 
 /// A decoded image: `width` × `height` texels, rows from the top, values as in the file.
-pub(super) struct Picture {
+pub struct Picture {
     pub width: u32,
     pub height: u32,
     pub texels: Vec<[f32; 4]>,
@@ -117,7 +117,7 @@ impl Picture {
             let [r, g, b, _] = texel.map(f64::from);
             let color = transformed(matrix, [r, g, b]);
             // Rounding alone makes no colour one that can't be held.
-            let least = -1e-4 * color.iter().sum::<f64>().abs();
+            let least = -0.0001 * color.iter().sum::<f64>().abs();
             outside += usize::from(color.iter().any(|x| *x < least));
             for (channel, value) in texel.iter_mut().zip(color) {
                 *channel = value.max(0.0) as f32;
@@ -134,7 +134,7 @@ impl Picture {
 }
 
 /// A canvas: each texel is the mean of `factor` × `factor` pixels of the file.
-pub(super) struct Canvas {
+pub struct Canvas {
     source: [u32; 2],
     factor: u32,
     picture: Picture,
@@ -143,7 +143,7 @@ pub(super) struct Canvas {
 impl Canvas {
     /// An empty canvas for a file of this size, counted against the budget. Memory is only touched as pixels arrive: a header
     /// alone costs nothing.
-    pub(super) fn new(file: Source<'_>, width: u64, height: u64) -> Result<Self, EnvironmentError> {
+    pub fn new(file: Source<'_>, width: u64, height: u64) -> Result<Self, EnvironmentError> {
         Self::check_size(file, width, height)?;
         let source = [width as u32, height as u32];
         let mut factor = 1;
@@ -162,7 +162,7 @@ impl Canvas {
     }
 
     /// Checks the size of a file's image.
-    pub(super) fn check_size(source: Source<'_>, width: u64, height: u64) -> Result<(), EnvironmentError> {
+    pub fn check_size(source: Source<'_>, width: u64, height: u64) -> Result<(), EnvironmentError> {
         if width == 0 || height == 0 {
             let name = source.path.display().to_string();
             return Err(MapError::Empty { name }.into());
@@ -176,13 +176,13 @@ impl Canvas {
     }
 
     /// Width and height of the file's image, in pixels.
-    pub(super) fn source_size(&self) -> [u32; 2] {
+    pub fn source_size(&self) -> [u32; 2] {
         self.source
     }
 
     /// Adds a colour at a pixel of the file's image, which must contain it.
     #[inline]
-    pub(super) fn add_color(&mut self, column: u32, row: u32, color: [f32; 3]) {
+    pub fn add_color(&mut self, column: u32, row: u32, color: [f32; 3]) {
         for (channel, value) in color.into_iter().enumerate() {
             self.add(column, row, channel, value);
         }
@@ -190,7 +190,7 @@ impl Canvas {
 
     /// Adds one channel at a pixel of the file's image, which must contain it.
     #[inline]
-    pub(super) fn add(&mut self, column: u32, row: u32, channel: usize, value: f32) {
+    pub fn add(&mut self, column: u32, row: u32, channel: usize, value: f32) {
         let Picture { width, texels, .. } = &mut self.picture;
         if self.factor == 1 {
             texels[(row * *width + column) as usize][channel] = value;
@@ -203,7 +203,7 @@ impl Canvas {
     }
 
     /// The image, with a warning if reduced.
-    pub(super) fn finish(self) -> Picture {
+    pub fn finish(self) -> Picture {
         let (mut picture, [width, height]) = (self.picture, self.source);
         if self.factor > 1 {
             let used = format!("{} × {}", picture.width, picture.height);

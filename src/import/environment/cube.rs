@@ -34,7 +34,7 @@ struct Cube<'a> {
 
 /// Converts an image with the layout of a cube map: a cross (with empty corners) or a strip of six faces. Returns any other
 /// image unchanged.
-pub(super) fn unfolded(picture: Picture) -> Picture {
+pub fn unfolded(picture: Picture) -> Picture {
     let (width, height) = (picture.width, picture.height);
     let faces = [0, 1, 2, 3, 4, 5];
     // Side and top left of each face in sides, and whether the image is a cross.
@@ -67,7 +67,7 @@ pub(super) fn unfolded(picture: Picture) -> Picture {
 
 /// Six files in a folder, called `px`, `nx`, … or `right`, `left`, … at the ends of their names, as an upright strip;
 /// `decode` reads one.
-pub(super) fn read_folder(
+pub fn read_folder(
     source: Source<'_>,
     decode: impl Fn(Source<'_>) -> Result<Picture, EnvironmentError>,
 ) -> Result<Picture, EnvironmentError> {

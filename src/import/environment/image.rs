@@ -16,7 +16,7 @@ const FACE_MAX: u32 = MAX_WIDTH / 4;
 
 /// Reads a cube as a strip of its six faces, a flat image unchanged. Whole numbers are sRGB codes or linear, as the source's
 /// encoding says; numbers with a point are linear.
-pub(super) fn read(source: Source<'_>) -> Result<Picture, EnvironmentError> {
+pub fn read(source: Source<'_>) -> Result<Picture, EnvironmentError> {
     let encoded = Encoded {
         name: source.path.to_string_lossy().into_owned(),
         bytes: source.bytes()?.into(),

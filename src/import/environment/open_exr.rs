@@ -33,7 +33,7 @@ struct Layer {
 }
 
 /// Reads the first layer that has colour or luminance, at its largest size, into its display window.
-pub(super) fn read(source: Source<'_>) -> Result<Picture, EnvironmentError> {
+pub fn read(source: Source<'_>) -> Result<Picture, EnvironmentError> {
     // Some damaged files fail assertions inside the crate instead of giving errors.
     let read = contained(|| read_guarded(source));
     read.unwrap_or_else(|| Err(source.damaged("its pixels contradict each other")))

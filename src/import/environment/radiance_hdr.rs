@@ -21,7 +21,7 @@ const XYZ: Chromaticities = Chromaticities {
 };
 
 /// Reads a file line by line, so that memory grows with actual lines and a truncation is located.
-pub(super) fn read(source: Source<'_>) -> Result<Picture, EnvironmentError> {
+pub fn read(source: Source<'_>) -> Result<Picture, EnvironmentError> {
     let bytes = source.bytes()?;
     if bytes.is_empty() {
         return Err(source.truncated("it has no content"));

@@ -74,13 +74,13 @@ maps! {
 
 /// A material with the sets of texture coordinates that it looks up, by name; the first of a mesh has none.
 #[derive(Clone, Default)]
-pub(super) struct Painted {
+pub struct Painted {
     pub slot: Slot,
     pub uv_sets: [Option<String>; 2],
 }
 
 /// Reader of one material.
-pub(super) struct Painter<'a, 'b> {
+pub struct Painter<'a, 'b> {
     pub material: &'a ufbx::Material,
     pub maps: &'a mut Maps<'b>,
     pub report: &'a mut ImportReport,

@@ -3,7 +3,7 @@
 //! The crate evaluates skins, blend shapes and curves, and knows the units and axes of the programs that write the format.
 
 mod material;
-pub(crate) mod polygons;
+pub mod polygons;
 
 use std::{collections::HashMap, path::Path};
 
@@ -45,7 +45,7 @@ fn limited(import: &Import) -> AllocatorOpts {
 }
 
 /// Options of every file of the crate: what it may take, and when it stops.
-pub(crate) fn options_of<'a>(import: &Import, progress: &'a dyn Fn(&ufbx::Progress) -> ProgressResult) -> LoadOpts<'a> {
+pub fn options_of<'a>(import: &Import, progress: &'a dyn Fn(&ufbx::Progress) -> ProgressResult) -> LoadOpts<'a> {
     LoadOpts {
         temp_allocator: limited(import),
         result_allocator: limited(import),
@@ -58,7 +58,7 @@ pub(crate) fn options_of<'a>(import: &Import, progress: &'a dyn Fn(&ufbx::Progre
 }
 
 /// Stops the crate where the import is not wanted any more.
-pub(crate) fn progress_of(loading: &Loading) -> impl Fn(&ufbx::Progress) -> ProgressResult {
+pub fn progress_of(loading: &Loading) -> impl Fn(&ufbx::Progress) -> ProgressResult {
     |_| match loading.check() {
         Ok(()) => ProgressResult::Continue,
         Err(_) => ProgressResult::Cancel,
@@ -66,7 +66,7 @@ pub(crate) fn progress_of(loading: &Loading) -> impl Fn(&ufbx::Progress) -> Prog
 }
 
 /// Why the crate can't read a file.
-pub(crate) fn unread(path: &Path, import: &Import, error: &ufbx::Error) -> ModelError {
+pub fn unread(path: &Path, import: &Import, error: &ufbx::Error) -> ModelError {
     match error.type_ {
         ErrorType::MemoryLimit | ErrorType::OutOfMemory | ErrorType::AllocationLimit => {
             let mib = import.budget.left() >> 20;
@@ -93,7 +93,7 @@ pub(crate) fn unread(path: &Path, import: &Import, error: &ufbx::Error) -> Model
 }
 
 /// Reports what the crate had to mend.
-pub(crate) fn report_warnings(scene: &ufbx::Scene, report: &mut ImportReport) {
+pub fn report_warnings(scene: &ufbx::Scene, report: &mut ImportReport) {
     for warning in &scene.metadata.warnings {
         let what = format!("what the file has wrong ({})", &*warning.description);
         report.count(Fate::Ignored, what, "", warning.count.max(1));
@@ -101,7 +101,7 @@ pub(crate) fn report_warnings(scene: &ufbx::Scene, report: &mut ImportReport) {
 }
 
 /// Loads the contents of an FBX file.
-pub(super) fn load(path: &Path, files: &Files, bytes: &[u8], options: &ModelOptions) -> Result<Model, ModelError> {
+pub fn load(path: &Path, files: &Files, bytes: &[u8], options: &ModelOptions) -> Result<Model, ModelError> {
     let import = &files.import;
     let loading = &import.loading;
     let progress = progress_of(loading);

@@ -8,6 +8,7 @@ use ufbx::{Face, VertexVec2, VertexVec4};
 use crate::{
     optics::tone::linear_from_srgb,
     optics::vector::vec3,
+    polygon::doubled_area,
     scene::{Loading, mesh::Mesh, report::Fate, report::ImportReport},
 };
 
@@ -16,7 +17,7 @@ const NONE: u32 = u32::MAX;
 
 /// What is read of a mesh besides its places and normals.
 #[derive(Clone, Copy, Default)]
-pub(crate) struct Look<'a> {
+pub struct Look<'a> {
     pub slot: u32,
     /// The first set of texture coordinates, and the second if it is used.
     pub uvs: [Option<&'a VertexVec2>; 2],
@@ -27,7 +28,7 @@ pub(crate) struct Look<'a> {
 
 /// Parts that can't be shown as they are.
 #[derive(Default)]
-pub(crate) struct Broken {
+pub struct Broken {
     /// Faces with a vertex that is not there.
     pub faces: usize,
     uvs: usize,
@@ -51,7 +52,7 @@ impl Broken {
 }
 
 /// A mesh of a file, in its pose.
-pub(crate) struct Polygons<'a> {
+pub struct Polygons<'a> {
     mesh: &'a ufbx::Mesh,
     /// Smoothing group of each face without normals; 0, or none, is flat.
     groups: &'a [u32],
@@ -74,12 +75,9 @@ impl<'a> Polygons<'a> {
                 continue;
             }
             let Some(places) = polygons.places(face) else { continue };
-            let doubled_area: DVec3 = places
-                .windows(2)
-                .map(|w| (w[0] - places[0]).cross(w[1] - places[0]))
-                .sum();
+            let area = doubled_area(&places);
             for corner in corners {
-                *sums.entry((polygons.place_index(corner), group)).or_default() += doubled_area;
+                *sums.entry((polygons.place_index(corner), group)).or_default() += area;
             }
         }
         let unit = |(key, sum): ((u32, u32), DVec3)| (key, sum.normalize_or_zero().as_vec3());

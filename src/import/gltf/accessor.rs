@@ -13,7 +13,7 @@ const U32: u32 = 5125;
 const F32: u32 = 5126;
 
 /// Bytes of a component; `None` for an unknown type.
-pub(super) fn component_size(component: u32) -> Option<usize> {
+pub fn component_size(component: u32) -> Option<usize> {
     match component {
         I8 | U8 => Some(1),
         I16 | U16 => Some(2),
@@ -116,7 +116,7 @@ impl Document {
 }
 
 /// Little-endian numbers, so many to an element.
-pub(super) struct Elements<B = Vec<u8>> {
+pub struct Elements<B = Vec<u8>> {
     /// Their type, as the format numbers it.
     pub component: u32,
     pub component_size: usize,
@@ -159,7 +159,7 @@ impl<B: AsRef<[u8]>> Elements<B> {
 }
 
 /// Little-endian unsigned integers of so many bytes.
-pub(super) fn unsigned(bytes: &[u8], size: usize) -> Vec<u32> {
+pub fn unsigned(bytes: &[u8], size: usize) -> Vec<u32> {
     let number = |bytes: &[u8]| {
         bytes
             .iter()

@@ -64,7 +64,7 @@ pub fn gltf_from_widths(roughness: f32, anisotropy: f32) -> Widths {
 
 /// Converts a slot from glTF's roughness and strength to ours. A varying roughness texture is copied with the wider
 /// highlight per texel; the anisotropy is that of its mean. Returns whether both widths are exact.
-pub(super) fn convert_widths(slot: &mut Slot, textures: &mut Vec<Texture>) -> bool {
+pub fn convert_widths(slot: &mut Slot, textures: &mut Vec<Texture>) -> bool {
     let [roughness, strength] = ["specular.roughness", "specular.anisotropy"].map(|key| slot.number(key));
     let Some(place) = slot.texture(TextureTarget::Roughness) else {
         let widths = widths_from_gltf(roughness, strength);

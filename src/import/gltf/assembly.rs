@@ -14,7 +14,7 @@ use super::{
 use crate::{assembly::Assembly, model_error::ModelError, scene::Model, scene::report::ImportReport};
 
 /// Joins all meshes of a scene, with their objects.
-pub(super) fn assemble(
+pub fn assemble(
     document: &Document,
     pose: &Pose,
     nodes: &[MeshNode],

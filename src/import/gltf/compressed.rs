@@ -30,7 +30,7 @@ struct MeshoptView {
 }
 
 /// Decompresses the buffer views that are compressed by meshopt.
-pub(super) fn decompress_views(document: &mut Document, report: &mut ImportReport) {
+pub fn decompress_views(document: &mut Document, report: &mut ImportReport) {
     let decoded = parallel::map(document.root.buffer_views.len(), |view| meshopt_view(document, view));
     for (view, result) in decoded.into_iter().enumerate() {
         let Some(result) = result else { continue };
@@ -74,24 +74,24 @@ fn read_meshopt(document: &Document, extension: &Json) -> Result<Vec<u8>, String
 }
 
 /// A primitive that was compressed by Draco.
-pub(super) struct DracoPrimitive(PackedGeometry);
+pub struct DracoPrimitive(PackedGeometry);
 
 impl DracoPrimitive {
     /// Decompresses a primitive; `None` if not compressed.
-    pub(super) fn read(document: &Document, primitive: &Primitive) -> Option<Result<Self, String>> {
+    pub fn read(document: &Document, primitive: &Primitive) -> Option<Result<Self, String>> {
         let extension = primitive.extensions.get("KHR_draco_mesh_compression")?;
         Some(decompress(document, primitive, extension).map(Self))
     }
 
     /// The corners of the triangles.
-    pub(super) fn indices(&self) -> Vec<u32> {
+    pub fn indices(&self) -> Vec<u32> {
         self.0
             .indices()
             .map_or_else(Vec::new, |indices| unsigned(indices.bytes(), 4))
     }
 
     /// An attribute with its components; `None` if stored elsewhere.
-    pub(super) fn attribute<const N: usize>(&self, semantic: &str) -> Option<Vec<[f32; N]>> {
+    pub fn attribute<const N: usize>(&self, semantic: &str) -> Option<Vec<[f32; N]>> {
         let attribute = self.0.attributes().iter().find(|known| known.semantic() == semantic)?;
         let component = attribute.component_type() as u32;
         let elements = Elements {
@@ -107,11 +107,7 @@ impl DracoPrimitive {
 
 /// A primitive's geometry, given with its extension.
 #[cfg(feature = "draco")]
-pub(super) fn decompress(
-    document: &Document,
-    primitive: &Primitive,
-    extension: &Json,
-) -> Result<PackedGeometry, String> {
+pub fn decompress(document: &Document, primitive: &Primitive, extension: &Json) -> Result<PackedGeometry, String> {
     use draco_gltf::{DecodeLimits, DracoPrimitiveContract, DracoPrimitiveExtension};
     /// Largest expansion: factor, and additional bytes. The entropy coder needs almost nothing for predictable data.
     const GROWTH: [u64; 2] = [4096, 1 << 20];
@@ -139,6 +135,6 @@ pub(super) fn decompress(
 
 /// Says that the program was built without.
 #[cfg(not(feature = "draco"))]
-pub(super) fn decompress(_: &Document, _: &Primitive, _: &Json) -> Result<PackedGeometry, String> {
+pub fn decompress(_: &Document, _: &Primitive, _: &Json) -> Result<PackedGeometry, String> {
     Err("this program was built without Draco (the feature `draco`)".to_owned())
 }

@@ -8,13 +8,13 @@ use serde::Deserialize;
 use super::json::{AnyVersion, Root, Texture};
 use super::material::GLTF_PARAMETERS;
 use crate::{
-    files::{Files, text_or_latin_1},
+    files::{Files, text_or_latin_1, u32_at},
     model_error::ModelError,
     scene::report::{Fate, ImportReport},
 };
 
 /// The extensions of buffer views and buffers.
-pub(super) const MESHOPT_EXTENSIONS: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
+pub const MESHOPT_EXTENSIONS: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
 /// Extensions that are supported or irrelevant, beside those of materials.
 const UNDERSTOOD: [&str; 17] = [
     "EXT_mesh_gpu_instancing",
@@ -41,7 +41,7 @@ const WEBP: &str = "EXT_texture_webp";
 const TEXTURE_SOURCES: [&str; 3] = ["KHR_texture_basisu", "EXT_texture_avif", "MSFT_texture_dds"];
 
 /// A file whose JSON can be read, with its buffers.
-pub(super) struct Document {
+pub struct Document {
     pub path: PathBuf,
     /// The files beside it, and who waits.
     pub files: Files,
@@ -205,7 +205,7 @@ fn split<'a>(path: &Path, bytes: &'a [u8]) -> Result<(&'a [u8], Option<Range<usi
             Some(_) => Err(not_gltf(path, "it begins with neither \"glTF\" nor JSON")),
         };
     }
-    let number = |at: usize| Some(u32::from_le_bytes(bytes.get(at..at + 4)?.try_into().ok()?));
+    let number = |at| u32_at(bytes, at);
     let (version, length) = (number(4).unwrap_or(2), number(8).unwrap_or(12) as usize);
     if version != 2 {
         return Err(not_gltf(path, format!("it is of GLB version {version}")));

@@ -41,7 +41,7 @@ use crate::{
 };
 
 /// Loads the contents of a .gltf or .glb file; `path` is named in messages.
-pub(super) fn load(path: &Path, files: Files, bytes: Vec<u8>, options: &ModelOptions) -> Result<Model, ModelError> {
+pub fn load(path: &Path, files: Files, bytes: Vec<u8>, options: &ModelOptions) -> Result<Model, ModelError> {
     let mut report = ImportReport::default();
     let mut document = Document::read(path, files, bytes, &mut report)?;
     compressed::decompress_views(&mut document, &mut report);

@@ -16,7 +16,7 @@ use crate::scene::{LightKind, ModelCamera, ModelLens, ModelLight, report::Fate, 
 const INSTANCES_MAX: usize = 1 << 20;
 
 /// A mesh at a place in the scene.
-pub(super) struct MeshNode {
+pub struct MeshNode {
     pub mesh: usize,
     pub node: usize,
     pub world_from_node: DMat4,
@@ -24,14 +24,14 @@ pub(super) struct MeshNode {
 
 /// Contents of the scene.
 #[derive(Default)]
-pub(super) struct Contents {
+pub struct Contents {
     pub meshes: Vec<MeshNode>,
     pub cameras: Vec<ModelCamera>,
     pub lights: Vec<ModelLight>,
 }
 
 /// Walks through a scene: the given one, else the default.
-pub(super) fn contents(document: &Document, pose: &Pose, scene: Option<usize>, report: &mut ImportReport) -> Contents {
+pub fn contents(document: &Document, pose: &Pose, scene: Option<usize>, report: &mut ImportReport) -> Contents {
     let root = &document.root;
     let contents = Contents::default();
     let mut walk = Walk {
@@ -71,7 +71,7 @@ pub(super) fn contents(document: &Document, pose: &Pose, scene: Option<usize>, r
 }
 
 /// Name of a node.
-pub(super) fn node_name(root: &Root, node: usize) -> String {
+pub fn node_name(root: &Root, node: usize) -> String {
     let name = root.nodes.get(node).and_then(|node| node.name.clone());
     name.unwrap_or_else(|| format!("node {node}"))
 }

@@ -8,7 +8,7 @@ use super::container::Document;
 use super::json::{Animation, Channel, Node};
 
 /// The nodes of a file at one time.
-pub(super) struct Pose {
+pub struct Pose {
     /// The nodes that an animation moves.
     moved: HashMap<usize, Placement>,
     /// World transform of every node, in the scene or not; empty without skins.
@@ -47,7 +47,7 @@ impl Placement {
 }
 
 /// Normalised rotation; the identity for a zero quaternion.
-pub(super) fn unit_rotation(xyzw: [f64; 4]) -> DQuat {
+pub fn unit_rotation(xyzw: [f64; 4]) -> DQuat {
     let rotation = DQuat::from_array(xyzw);
     if rotation.length_squared() > 0.0 && rotation.is_finite() {
         rotation.normalize()
@@ -58,7 +58,7 @@ pub(super) fn unit_rotation(xyzw: [f64; 4]) -> DQuat {
 
 impl Pose {
     /// The rest pose, or that of the first animation at a time.
-    pub(super) fn new(document: &Document, time_s: Option<f32>) -> Self {
+    pub fn new(document: &Document, time_s: Option<f32>) -> Self {
         let nodes = &document.root.nodes;
         let mut pose = Self {
             moved: HashMap::new(),
@@ -127,13 +127,13 @@ impl Pose {
     }
 
     /// A node's own transform, its parent's space from its own.
-    pub(super) fn parent_from_node(&self, index: usize, node: &Node) -> DMat4 {
+    pub fn parent_from_node(&self, index: usize, node: &Node) -> DMat4 {
         let moved = self.moved.get(&index).copied();
         moved.unwrap_or_else(|| Placement::of(node)).parent_from_node()
     }
 
     /// Weights of a node's morph targets: from the animation, else the node, else the mesh.
-    pub(super) fn weights<'a>(&'a self, document: &'a Document, node: usize) -> &'a [f32] {
+    pub fn weights<'a>(&'a self, document: &'a Document, node: usize) -> &'a [f32] {
         let of_node = &document.root.nodes[node];
         let of_mesh = of_node.mesh.and_then(|mesh| document.root.meshes.get(mesh));
         let of_mesh = of_mesh.map(|mesh| &mesh.weights);
@@ -144,7 +144,7 @@ impl Pose {
     }
 
     /// Joint matrices of a skin; `None` without the skin.
-    pub(super) fn joints(&self, document: &Document, skin: usize) -> Option<Vec<DMat4>> {
+    pub fn joints(&self, document: &Document, skin: usize) -> Option<Vec<DMat4>> {
         let skin = document.root.skins.get(skin)?;
         let inverse: Option<Vec<[f32; 16]>> = skin
             .inverse_bind_matrices
@@ -177,7 +177,7 @@ fn world_transforms(nodes: &[Node], parent_from_node: impl Fn(usize) -> DMat4) -
 }
 
 /// The nodes that are no node's child.
-pub(super) fn root_nodes(nodes: &[Node]) -> Vec<usize> {
+pub fn root_nodes(nodes: &[Node]) -> Vec<usize> {
     let mut is_child = vec![false; nodes.len()];
     for child in nodes.iter().flat_map(|node| &node.children) {
         if let Some(is_child) = is_child.get_mut(*child) {

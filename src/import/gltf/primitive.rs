@@ -14,7 +14,7 @@ const FAN: u32 = 6;
 
 /// Deformation of a mesh at a node.
 #[derive(Clone, Copy, Default)]
-pub(super) struct Bending<'a> {
+pub struct Bending<'a> {
     /// Weights of the morph targets.
     pub weights: &'a [f32],
     /// Joint matrices of the skin.
@@ -23,7 +23,7 @@ pub(super) struct Bending<'a> {
 
 /// Triangles of a mesh, in its own space, or in scene space if skinned; with slots given by `materials`. Unreadable parts
 /// are dropped and reported.
-pub(super) fn read_mesh(
+pub fn read_mesh(
     document: &Document,
     index: usize,
     bending: Bending<'_>,

@@ -10,13 +10,13 @@ use crate::{
 };
 
 /// Reflectance of dielectrics at normal incidence.
-pub(super) const DIELECTRIC: f64 = 0.04;
+pub const DIELECTRIC: f64 = 0.04;
 /// Below this share a quotient would be noise.
 const EPSILON: f64 = 1e-6;
 
 /// Factors of a material.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Factors {
+pub struct Factors {
     pub diffuse: [f32; 4],
     pub specular: [f32; 3],
     pub glossiness: f32,
@@ -24,7 +24,7 @@ pub(super) struct Factors {
 
 /// The same in the other workflow, linear.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Converted {
+pub struct Converted {
     pub base_color: [f32; 3],
     pub metalness: f32,
     pub roughness: f32,
@@ -47,7 +47,7 @@ fn metalness(diffuse: f64, specular: f64, strongest: f64) -> f64 {
 }
 
 /// Converts linear colours.
-pub(super) fn convert(diffuse: [f32; 3], specular: [f32; 3], glossiness: f32) -> Converted {
+pub fn convert(diffuse: [f32; 3], specular: [f32; 3], glossiness: f32) -> Converted {
     let diffuse = Vec3::<f64>::from_f32(diffuse);
     let specular = Vec3::<f64>::from_f32(specular);
     let strongest = specular.x.max(specular.y).max(specular.z);
@@ -63,7 +63,7 @@ pub(super) fn convert(diffuse: [f32; 3], specular: [f32; 3], glossiness: f32) ->
 }
 
 /// The textures of base colour (with opacity) and of metalness and roughness, of the larger of both sizes.
-pub(super) fn convert_textures(
+pub fn convert_textures(
     name: &str,
     factors: Factors,
     diffuse: Option<&Texture>,

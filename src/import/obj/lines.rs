@@ -10,7 +10,7 @@ const UNNAMED: &str = "(unnamed)";
 
 /// A model file.
 #[derive(Default)]
-pub(super) struct Source<'a> {
+pub struct Source<'a> {
     pub text: Cow<'a, str>,
     /// What follows each `mtllib`.
     pub libraries: Vec<String>,
@@ -21,7 +21,7 @@ pub(super) struct Source<'a> {
 }
 
 /// Reads a model file's lines. `usemtl` gets a name, `vt` two coordinates; comments go on in no next line.
-pub(super) fn of_model(bytes: &[u8]) -> Source<'_> {
+pub fn of_model(bytes: &[u8]) -> Source<'_> {
     let text = text_of(bytes);
     let (mut source, mut is_odd) = (Source::default(), false);
     let (mut object, mut group, mut smoothing) = (String::new(), String::new(), 0);
@@ -77,7 +77,7 @@ fn repaired(line: &str) -> Option<String> {
 }
 
 /// The first line that lacks numbers, or has words in their places.
-pub(super) fn broken(text: &str) -> Option<String> {
+pub fn broken(text: &str) -> Option<String> {
     // Windows writes -1.#IND and -nan(ind) for what is no number.
     let is_number = |word: &str| word.parse::<f32>().is_ok() || word.contains(['#', '(']);
     let is_broken = |line: &&str| {
@@ -122,7 +122,7 @@ fn text_of(bytes: &[u8]) -> Cow<'_, str> {
 
 /// A material of a library.
 #[derive(Debug, Default)]
-pub(super) struct Material {
+pub struct Material {
     pub name: String,
     /// Keywords as the table spells them, with what follows each; the last of a keyword counts.
     pub lines: Vec<(String, String)>,
@@ -159,13 +159,13 @@ impl Material {
 }
 
 /// The numbers at the beginning of a text.
-pub(super) fn numbers(text: &str) -> Vec<f32> {
+pub fn numbers(text: &str) -> Vec<f32> {
     let text = text.strip_prefix("xyz").unwrap_or(text);
     text.split_whitespace().map_while(|word| word.parse().ok()).collect()
 }
 
 /// Materials of a library.
-pub(super) fn of_library(bytes: &[u8]) -> Vec<Material> {
+pub fn of_library(bytes: &[u8]) -> Vec<Material> {
     let mut materials: Vec<Material> = Vec::new();
     for line in joined(&text_of(bytes)) {
         let (key, rest) = keyword(&line);

@@ -2,7 +2,7 @@
 
 /// A texture file and its mapping.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Map<'a> {
+pub struct Map<'a> {
     /// File name, which may have spaces.
     pub name: &'a str,
     /// Repetitions along u and v.

@@ -31,7 +31,7 @@ use crate::{
 };
 
 /// Loads the contents of an OBJ file.
-pub(super) fn load(path: &Path, files: &Files, bytes: &[u8], options: &ModelOptions) -> Result<Model, ModelError> {
+pub fn load(path: &Path, files: &Files, bytes: &[u8], options: &ModelOptions) -> Result<Model, ModelError> {
     let loading = &files.import.loading;
     let source = lines::of_model(bytes);
     let mut report = ImportReport::default();

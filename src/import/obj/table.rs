@@ -54,7 +54,7 @@ pub const MTL_PARAMETERS: &[FileParameter] = file_parameters! { "" {
 const SHOWN: [f32; 6] = [0.0, 1.0, 2.0, 3.0, 5.0, 8.0];
 
 /// Reports a material's parameters that the table ignores or does not have, and values out of range.
-pub(super) fn report_unread(material: &Material, report: &mut ImportReport) {
+pub fn report_unread(material: &Material, report: &mut ImportReport) {
     let mut note = |fate, what: String| report.note(fate, what, &material.name);
     for (key, text) in &material.lines {
         let Some(row) = MTL_PARAMETERS.iter().find(|row| row.place == key) else {

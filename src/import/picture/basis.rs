@@ -4,7 +4,7 @@ use image::DynamicImage;
 
 /// Each of the faces, of the level of so many that `level_of` chooses for columns and rows.
 #[cfg(feature = "basis")]
-pub(super) fn decode(
+pub fn decode(
     bytes: &[u8],
     faces: usize,
     level_of: impl Fn([u32; 2], u32) -> u32,
@@ -31,7 +31,7 @@ pub(super) fn decode(
 
 /// Says that the program was built without.
 #[cfg(not(feature = "basis"))]
-pub(super) fn decode(
+pub fn decode(
     _bytes: &[u8],
     _faces: usize,
     _level_of: impl Fn([u32; 2], u32) -> u32,

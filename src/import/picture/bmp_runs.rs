@@ -1,9 +1,11 @@
 //! BMP files of run lengths, whose runs may leave pixels out. The `image` crate makes these black, most programs the first
 //! colour of the palette: here it decodes the indices, as greys.
 
+use crate::files::u32_at;
+
 /// A file whose palette is its indices, and the colours that they stand for; `None` if it has no run lengths.
-pub(super) fn indexed(bytes: &[u8]) -> Option<(Vec<u8>, Vec<[u8; 3]>)> {
-    let number = |at: usize| Some(u32::from_le_bytes(bytes.get(at..at + 4)?.try_into().ok()?));
+pub fn indexed(bytes: &[u8]) -> Option<(Vec<u8>, Vec<[u8; 3]>)> {
+    let number = |at| u32_at(bytes, at);
     // 1 and 2: runs of 8 and of 4 bits.
     if !bytes.starts_with(b"BM") || !matches!(number(30)?, 1 | 2) {
         return None;

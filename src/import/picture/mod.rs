@@ -171,6 +171,12 @@ pub(super) struct Scaled {
 }
 
 impl Scaled {
+    /// It, taken from the budget.
+    pub fn within(self, budget: &Budget) -> Result<Self, String> {
+        let taken = budget.take(self.texture.bytes() as u64);
+        taken.map_err(|over| over.to_string()).map(|()| self)
+    }
+
     /// Reports the map under its name in the model's file.
     pub fn report(&self, report: &mut ImportReport) {
         let name = &self.texture.name;

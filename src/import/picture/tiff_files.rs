@@ -16,7 +16,7 @@ use super::light;
 const DECODED_MAX: usize = 2 << 30;
 
 /// Width and height of a TIFF image of any type; `None` for other files.
-pub(super) fn size(bytes: &[u8]) -> Option<[u32; 2]> {
+pub fn size(bytes: &[u8]) -> Option<[u32; 2]> {
     let (width, height) = is_tiff(bytes).then(|| Decoder::new(Cursor::new(bytes)).ok()?.dimensions().ok())??;
     Some([width, height])
 }
@@ -28,7 +28,7 @@ fn is_tiff(bytes: &[u8]) -> bool {
 }
 
 /// The image in a file's bytes; `None` if not floating-point.
-pub(super) fn decode(bytes: &[u8]) -> Result<Option<DynamicImage>, String> {
+pub fn decode(bytes: &[u8]) -> Result<Option<DynamicImage>, String> {
     if !is_tiff(bytes) {
         return Ok(None);
     }
@@ -62,7 +62,7 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Option<DynamicImage>, String> {
 }
 
 /// Whether an image says that opacity multiplies its colours.
-pub(super) fn is_premultiplied(bytes: &[u8]) -> bool {
+pub fn is_premultiplied(bytes: &[u8]) -> bool {
     let extra = is_tiff(bytes).then(|| {
         let mut decoder = Decoder::new(Cursor::new(bytes)).ok()?;
         decoder.find_tag_unsigned_vec::<u16>(Tag::ExtraSamples).ok()?

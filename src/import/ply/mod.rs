@@ -57,7 +57,7 @@ enum End {
 }
 
 /// Loads the contents of a PLY file.
-pub(super) fn load(path: &Path, files: &Files, bytes: &[u8], options: &ModelOptions) -> Result<Model, ModelError> {
+pub fn load(path: &Path, files: &Files, bytes: &[u8], options: &ModelOptions) -> Result<Model, ModelError> {
     let loading = &files.import.loading;
     let invalid = |reason: String| ModelError::invalid(path, reason);
     let (elements, names, mut rows) = rows::header(bytes).map_err(invalid)?;

@@ -51,7 +51,7 @@ impl Kind {
     }
 }
 
-pub(super) struct Property {
+pub struct Property {
     pub name: String,
     kind: Kind,
     /// Of the number of values, in a list.
@@ -73,14 +73,14 @@ impl Property {
     }
 }
 
-pub(super) struct Element {
+pub struct Element {
     pub name: String,
     pub rows: u64,
     pub properties: Vec<Property>,
 }
 
 /// What is left of a file.
-pub(super) struct Rows<'a> {
+pub struct Rows<'a> {
     left: &'a [u8],
     format: Format,
 }
@@ -94,7 +94,7 @@ enum Format {
 
 /// The values of a row.
 #[derive(Default)]
-pub(super) struct Row {
+pub struct Row {
     values: Vec<f64>,
     /// Where those of each property end.
     ends: Vec<usize>,
@@ -109,7 +109,7 @@ impl Row {
 }
 
 /// The elements and the texture files of a file, and what comes after its header.
-pub(super) fn header(bytes: &[u8]) -> Result<(Vec<Element>, Vec<String>, Rows<'_>), String> {
+pub fn header(bytes: &[u8]) -> Result<(Vec<Element>, Vec<String>, Rows<'_>), String> {
     let (mut elements, mut textures): (Vec<Element>, _) = (Vec::new(), Vec::new());
     let mut rows = Rows {
         left: bytes,

@@ -45,7 +45,7 @@ const TRANSFORMS_MAX: usize = 16;
 type Painted = (Slot, [Option<String>; 2]);
 
 /// Slots of the materials that meshes have asked for so far.
-pub(super) struct Slots<'a> {
+pub struct Slots<'a> {
     maps: Maps<'a>,
     read: &'a Known,
     /// Slot of a material by its path; none for faces without one.

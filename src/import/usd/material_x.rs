@@ -6,7 +6,7 @@ use roxmltree::Node;
 use crate::xml;
 
 /// The text of the layer.
-pub(super) fn layer(text: &str) -> Result<String, String> {
+pub fn layer(text: &str) -> Result<String, String> {
     let document = xml::parse(text)?;
     let root = document.root_element();
     let is_material = |node: &Node<'_, '_>| node.has_tag_name("surfacematerial");

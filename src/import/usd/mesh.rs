@@ -7,12 +7,12 @@ use openusd::{sdf::Value, usd::Prim, usd::TimeCode};
 
 use super::{kind, material::Slots, scene::value_at, shape::unit_mesh, text_of};
 use crate::{
-    polygon::Polygons,
+    polygon::{Polygons, doubled_area},
     scene::{Loading, mesh::Mesh, report::Fate, report::ImportReport, texture::TextureTarget},
 };
 
 /// Colours of what has no material.
-pub(super) const COLORS: &str = "primvars:displayColor";
+pub const COLORS: &str = "primvars:displayColor";
 
 /// A colour of a vertex, which is finite.
 fn as_color([r, g, b]: [f32; 3]) -> [f32; 4] {
@@ -76,7 +76,7 @@ fn ints(prim: &Prim, name: &str, time: TimeCode) -> Option<Vec<i32>> {
 }
 
 /// The path of the material that a prim is bound to, or the nearest of those above it.
-pub(super) fn bound(prim: &Prim) -> Option<String> {
+pub fn bound(prim: &Prim) -> Option<String> {
     let of_prim = |prim: Prim| {
         let mut names = ["material:binding:full", "material:binding"].into_iter();
         names.find_map(|name| prim.relationship(name).targets().ok()?.into_iter().next())
@@ -88,13 +88,7 @@ pub(super) fn bound(prim: &Prim) -> Option<String> {
 }
 
 /// A shape's mesh in its material, or in its own colour.
-pub(super) fn read_shape(
-    prim: &Prim,
-    shape: &str,
-    time: TimeCode,
-    slots: &mut Slots<'_>,
-    report: &mut ImportReport,
-) -> Mesh {
+pub fn read_shape(prim: &Prim, shape: &str, time: TimeCode, slots: &mut Slots<'_>, report: &mut ImportReport) -> Mesh {
     let material = bound(prim);
     let (slot, _) = slots.slot(material.as_deref(), prim.stage(), report);
     let mut mesh = unit_mesh(shape, slot);
@@ -109,7 +103,7 @@ pub(super) fn read_shape(
 }
 
 /// The triangles of a mesh in its space.
-pub(super) fn read_mesh(
+pub fn read_mesh(
     prim: &Prim,
     time: TimeCode,
     slots: &mut Slots<'_>,
@@ -225,14 +219,11 @@ fn smooth(points: &[DVec3], counts: &[i32], corners: &[i32], is_left: bool) -> P
     let mut sums = vec![DVec3::ZERO; points.len()];
     let mut rest = corners;
     for count in counts {
-        let (face, others) = rest.split_at((*count).max(0) as usize % (rest.len() + 1));
+        let (face, others) = rest.split_at(rest.len().min((*count).max(0) as usize));
         rest = others;
         let places: Option<Vec<DVec3>> = face.iter().map(|point| points.get(*point as usize).copied()).collect();
         let Some(places) = places else { continue };
-        let area: DVec3 = places
-            .windows(2)
-            .map(|w| (w[0] - places[0]).cross(w[1] - places[0]))
-            .sum();
+        let area = doubled_area(&places);
         face.iter().for_each(|point| sums[*point as usize] += area);
     }
     let side = if is_left { -1.0 } else { 1.0 };

@@ -35,7 +35,7 @@ const ERRORS_MAX: usize = 16;
 const HALF_SPACE: [f64; 2] = [1.55; 2];
 
 /// Loads the contents of a USD file.
-pub(crate) fn load(path: &Path, files: Files, bytes: Vec<u8>, options: &ModelOptions) -> Result<Model, ModelError> {
+pub fn load(path: &Path, files: Files, bytes: Vec<u8>, options: &ModelOptions) -> Result<Model, ModelError> {
     let read = || {
         let files = Rc::new(files);
         let opened = opened(path, bytes, files.clone());
@@ -83,7 +83,7 @@ struct Walk<'a> {
 }
 
 /// A value at a time, as it is without one.
-pub(super) fn value_at(attribute: &Attribute, time: TimeCode) -> Option<Value> {
+pub fn value_at(attribute: &Attribute, time: TimeCode) -> Option<Value> {
     attribute.get_at::<Value>(time).ok().flatten()
 }
 

@@ -10,7 +10,7 @@ use crate::scene::{mesh::Mesh, shapes::Profile, shapes::rectangle};
 const HALF: u32 = 32;
 
 /// The kind of a shape, and the place of its unit mesh; `None` of other prims.
-pub(super) fn shape(prim: &Prim, time: TimeCode) -> Option<(String, DMat4)> {
+pub fn shape(prim: &Prim, time: TimeCode) -> Option<(String, DMat4)> {
     let number = |name: &str, default: f64| {
         let found = value_at(&prim.attribute(name), time).and_then(|value| value.cast::<f64>().ok());
         found.filter(|x| x.is_finite()).unwrap_or(default)
@@ -30,7 +30,7 @@ pub(super) fn shape(prim: &Prim, time: TimeCode) -> Option<(String, DMat4)> {
     Some((kind, DMat4::from_mat3(axis * DMat3::from_diagonal(size))))
 }
 
-pub(super) fn unit_mesh(kind: &str, slot: u32) -> Mesh {
+pub fn unit_mesh(kind: &str, slot: u32) -> Mesh {
     let mut profile = Profile::start(DVec2::Y);
     let mut lines = |ends: &[[f64; 2]]| ends.iter().for_each(|[x, y]| profile.line(dvec2(*x, *y), 1));
     match kind {

@@ -153,24 +153,24 @@ pub fn inner_reflection(ior: f64) -> f64 {
     1.0 - (1.0 - mean.sum::<f64>()) / (ior * ior)
 }
 
-/// What the coat's medium leaves of the light of the layers below, by its directions; for coats that absorb by their length
-/// of way. Light that goes on into the solid takes the way of the view twice, for it finds no coat on its way out.
-#[inline(always)]
-pub fn coat_tint<T: Real>(material: &Material<T>, layers: &Layers<T>, surface: &Surface<T>, wi: Vec3<T>) -> Vec3<T> {
-    let white = Vec3::ONE;
-    let reflected = layers[Layer::Coat].albedo.x;
-    let left = (T::ONE - reflected).max(T::from_f64(1e-9));
-    let share = (material.coat_weight - reflected).max(T::ZERO) / left;
-    let out = surface.coat_normal.dot(surface.wo);
-    let is_through = surface.normal.dot(wi).below_zero();
-    let back = T::select(is_through, out, surface.coat_normal.dot(wi).abs());
-    let way = way_length(material, out) + way_length(material, back);
-    let tint = white.mix(color_over(material, way), share);
-    Vec3::select(Coat::is_there(material, surface), tint, white)
-}
+inlined! {
+    /// What the coat's medium leaves of the light of the layers below, by its directions; for coats that absorb by their length
+    /// of way. Light that goes on into the solid takes the way of the view twice, for it finds no coat on its way out.
+    pub fn coat_tint<T: Real>(material: &Material<T>, layers: &Layers<T>, surface: &Surface<T>, wi: Vec3<T>) -> Vec3<T> {
+        let white = Vec3::ONE;
+        let reflected = layers[Layer::Coat].albedo.x;
+        let left = (T::ONE - reflected).max(T::from_f64(1e-9));
+        let share = (material.coat_weight - reflected).max(T::ZERO) / left;
+        let out = surface.coat_normal.dot(surface.wo);
+        let is_through = surface.normal.dot(wi).below_zero();
+        let back = T::select(is_through, out, surface.coat_normal.dot(wi).abs());
+        let way = way_length(material, out) + way_length(material, back);
+        let tint = white.mix(color_over(material, way), share);
+        Vec3::select(Coat::is_there(material, surface), tint, white)
+    }
 
-/// True if the coat takes light of a layer below by the way through it.
-#[inline(always)]
-pub fn absorbs_over<T: Real>(material: &Material<T>, layer: Layer) -> bool {
-    layer as u32 > Layer::Coat as u32 && material.has_flag(COAT_ABSORBS)
+    /// True if the coat takes light of a layer below by the way through it.
+    pub fn absorbs_over<T: Real>(material: &Material<T>, layer: Layer) -> bool {
+        layer as u32 > Layer::Coat as u32 && material.has_flag(COAT_ABSORBS)
+    }
 }

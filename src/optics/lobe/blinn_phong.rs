@@ -34,25 +34,25 @@ inlined! {
     }
 }
 
-/// D h.z/(4 |wo·h|).
-#[inline(always)]
-pub fn density<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: Vec3<T>, wi: Vec3<T>) -> T {
-    let facet = facet(frame, wo, wi);
-    let n = exponent(shape.roughness);
-    // ln cosθh: for narrow lobes from sin²θh by the tangential components, else from the cosine; each loses precision where
-    // the other is used.
-    let half = T::HALF;
-    let sine2 = facet.h.x * facet.h.x + facet.h.y * facet.h.y;
-    let near = half * log1p(-sine2.min(half));
-    let log_cosine = T::select(sine2.less(half), near, facet.h.z.max(T::from_f64(1e-30)).ln());
-    let power = ((n + T::ONE) * log_cosine).exp();
-    let scale = (n + T::TWO) * T::from_f64(0.125 * std::f64::consts::FRAC_1_PI);
-    let value = scale * power / facet.cosine.max(T::from_f64(1e-12));
-    value.masked(facet.h.z.above_zero())
-}
+inlined! {
+    /// D h.z/(4 |wo·h|).
+    pub fn density<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: Vec3<T>, wi: Vec3<T>) -> T {
+        let facet = facet(frame, wo, wi);
+        let n = exponent(shape.roughness);
+        // ln cosθh: for narrow lobes from sin²θh by the tangential components, else from the cosine; each loses precision where
+        // the other is used.
+        let half = T::HALF;
+        let sine2 = facet.h.x * facet.h.x + facet.h.y * facet.h.y;
+        let near = half * log1p(-sine2.min(half));
+        let log_cosine = T::select(sine2.less(half), near, facet.h.z.max(T::from_f64(1e-30)).ln());
+        let power = ((n + T::ONE) * log_cosine).exp();
+        let scale = (n + T::TWO) * T::from_f64(0.125 * std::f64::consts::FRAC_1_PI);
+        let value = scale * power / facet.cosine.max(T::from_f64(1e-12));
+        value.masked(facet.h.z.above_zero())
+    }
 
-/// G2 (wo·h)/(cosθo h.z).
-#[inline(always)]
-pub fn weight<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: Vec3<T>, wi: Vec3<T>) -> T {
-    distribution_weight(isotropic_alpha(shape), facet(frame, wo, wi))
+    /// G2 (wo·h)/(cosθo h.z).
+    pub fn weight<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: Vec3<T>, wi: Vec3<T>) -> T {
+        distribution_weight(isotropic_alpha(shape), facet(frame, wo, wi))
+    }
 }

@@ -240,11 +240,11 @@ pub struct LobeSample<T> {
 }
 
 /// The smallest α of the microfacet lobes and roughness of the cosine powers: a cone of a hundredth of a degree.
-pub const ALPHA_MIN: f64 = 1e-4;
+pub const ALPHA_MIN: f64 = 0.0001;
 
 /// Below this angular width (R or α) light sampling cannot help and f32 densities lose digits: the lobe still samples,
 /// but is weighed as a mirror.
-pub const MIRROR_WIDTH: f64 = 1e-3;
+pub const MIRROR_WIDTH: f64 = 0.001;
 
 inlined! {
     /// α of the microfacet lobes.
@@ -493,46 +493,46 @@ pub fn lobe_evaluate<T: Real>(
     })
 }
 
-/// (evaluate, density) of a view; evaluate is 0 if it is not needed.
-#[inline(always)]
-fn kept_evaluate<T: Real>(shape: &LobeShape<'_, T>, view: &LobeView<T>, wi: Vec3<T>, needs_value: bool) -> [T; 2] {
-    // One that comes from below is added by the mirror policy. A loop, so that the code is there once.
-    let directions = [wi, wi.reflected_at_plane(view.normal)];
-    let count = if shape.horizon == Horizon::Mirror { 2 } else { 1 };
-    let mut sums = [T::ZERO; 2];
-    for direction in &directions[..count] {
-        let [value, density] = raw_evaluate(shape, view, *direction, needs_value);
-        sums = [sums[0] + value, sums[1] + density];
+inlined! {
+    /// (evaluate, density) of a view; evaluate is 0 if it is not needed.
+    fn kept_evaluate<T: Real>(shape: &LobeShape<'_, T>, view: &LobeView<T>, wi: Vec3<T>, needs_value: bool) -> [T; 2] {
+        // One that comes from below is added by the mirror policy. A loop, so that the code is there once.
+        let directions = [wi, wi.reflected_at_plane(view.normal)];
+        let count = if shape.horizon == Horizon::Mirror { 2 } else { 1 };
+        let mut sums = [T::ZERO; 2];
+        for direction in &directions[..count] {
+            let [value, density] = raw_evaluate(shape, view, *direction, needs_value);
+            sums = [sums[0] + value, sums[1] + density];
+        }
+        if shape.horizon == Horizon::None {
+            return sums;
+        }
+        let visible = view.normal.dot(wi).above_zero();
+        mapped!([sums[0], sums[1]], |sum| sum.masked(visible))
     }
-    if shape.horizon == Horizon::None {
-        return sums;
-    }
-    let visible = view.normal.dot(wi).above_zero();
-    mapped!([sums[0], sums[1]], |sum| sum.masked(visible))
-}
 
-/// (evaluate, density) before the horizon policy.
-#[inline(always)]
-fn raw_evaluate<T: Real>(shape: &LobeShape<'_, T>, view: &LobeView<T>, wi: Vec3<T>, needs_value: bool) -> [T; 2] {
-    let LobeView { frame, wo, .. } = view;
-    if refracts_at_facets(shape) {
-        let along = refracting_normal(*wo, wi, shape.eta);
-        let mirrored = facet_mirror(frame, *wo, wi, shape.eta);
-        let factor = facet_density_factor(frame, *wo, wi, shape.eta, along);
-        let density = (factor * raw_density(shape, frame, *wo, mirrored)).masked(factor.above_zero());
+    /// (evaluate, density) before the horizon policy.
+    fn raw_evaluate<T: Real>(shape: &LobeShape<'_, T>, view: &LobeView<T>, wi: Vec3<T>, needs_value: bool) -> [T; 2] {
+        let LobeView { frame, wo, .. } = view;
+        if refracts_at_facets(shape) {
+            let along = refracting_normal(*wo, wi, shape.eta);
+            let mirrored = facet_mirror(frame, *wo, wi, shape.eta);
+            let factor = facet_density_factor(frame, *wo, wi, shape.eta, along);
+            let density = (factor * raw_density(shape, frame, *wo, mirrored)).masked(factor.above_zero());
+            if !needs_value {
+                return [T::ZERO, density];
+            }
+            return [density * facet_weight(shape, frame, *wo, wi, mirrored), density];
+        }
+        let is_above = frame.normal.dot(wi).above_zero() | T::Mask::splat(!shape.lobe.is_hemispherical());
+        if !is_above.any() {
+            return [T::ZERO, T::ZERO];
+        }
+        let seen = view.seen_lobe(shape);
+        let density = raw_density(&seen, frame, *wo, wi).masked(is_above);
         if !needs_value {
             return [T::ZERO, density];
         }
-        return [density * facet_weight(shape, frame, *wo, wi, mirrored), density];
+        [(density * raw_weight(&seen, frame, *wo, wi)).masked(is_above), density]
     }
-    let is_above = frame.normal.dot(wi).above_zero() | T::Mask::splat(!shape.lobe.is_hemispherical());
-    if !is_above.any() {
-        return [T::ZERO, T::ZERO];
-    }
-    let seen = view.seen_lobe(shape);
-    let density = raw_density(&seen, frame, *wo, wi).masked(is_above);
-    if !needs_value {
-        return [T::ZERO, density];
-    }
-    [(density * raw_weight(&seen, frame, *wo, wi)).masked(is_above), density]
 }

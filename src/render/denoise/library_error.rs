@@ -25,7 +25,7 @@ pub enum LibraryError {
     )]
     Missing,
     /// What is there cannot be used as the library.
-    #[error("{}: {reason}", path.display())]
+    #[error("{path}: {reason}")]
     Unusable { path: PathBuf, reason: String },
     /// The library refuses to work here.
     #[error("the denoiser can't be used here: {0}")]

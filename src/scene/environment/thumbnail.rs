@@ -13,7 +13,7 @@ const MIDDLE_GREY: f32 = 0.3;
 pub fn thumbnail(environment: &Environment, width: u32, height: u32) -> Vec<[u8; 4]> {
     let pixels: Vec<[f32; 3]> = (0..height)
         .flat_map(|row| (0..width).map(move |column| [column, row]))
-        .map(|place| pixel_radiance(environment, place, [width, height]))
+        .map(|place| radiance_of_taps(environment, place, [width, height]))
         .collect();
     let exposure = MIDDLE_GREY / geometric_mean_luminance(&pixels);
     pixels
@@ -45,8 +45,8 @@ pub fn brightened(pixels: &[u8], factor: f32) -> Vec<u8> {
         .collect()
 }
 
-/// The mean radiance over a pixel.
-fn pixel_radiance(environment: &Environment, place: [u32; 2], size: [u32; 2]) -> [f32; 3] {
+/// The sum of a pixel's samples.
+fn radiance_of_taps(environment: &Environment, place: [u32; 2], size: [u32; 2]) -> [f32; 3] {
     let mut sum = [0.0; 3];
     for tap in 0..TAPS * TAPS {
         let offset = [tap % TAPS, tap / TAPS];
@@ -55,7 +55,7 @@ fn pixel_radiance(environment: &Environment, place: [u32; 2], size: [u32; 2]) ->
         let radiance = environment_radiance(environment, environment_direction(uv)).to_f32();
         sum = [0, 1, 2].map(|channel| sum[channel] + radiance[channel]);
     }
-    sum.map(|value| value / (TAPS * TAPS) as f32)
+    sum
 }
 
 /// exp(mean(ln luminance)), with black pixels counted as nearly black; 1 if there is no light at all.

@@ -9,7 +9,7 @@ use crate::scene::model::{Filter, Slot, TextureRef};
 
 /// One use of a texture map.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Use {
+pub struct Use {
     /// Index among the packed maps.
     pub picture: usize,
     /// Material parameter that it varies.
@@ -21,10 +21,10 @@ pub(super) struct Use {
 }
 
 /// The uses of a slot, by target.
-pub(super) type SlotUses = [Option<Use>; TARGETS];
+pub type SlotUses = [Option<Use>; TARGETS];
 
 /// A slot's uses of its model's maps.
-pub(super) fn of_slot(slot: &Slot, is_translucent: impl Fn(usize) -> bool) -> SlotUses {
+pub fn of_slot(slot: &Slot, is_translucent: impl Fn(usize) -> bool) -> SlotUses {
     std::array::from_fn(|index| {
         let target = TextureTarget::ALL[index];
         let reference = slot.texture(target)?;
@@ -69,7 +69,7 @@ fn placed([uu, uv, u1, vu, vv, v1]: [f32; 6]) -> TextureRecord {
 
 /// A use of a user's map with its index, whether it is translucent anywhere, and whether the slot's triangles have texture
 /// coordinates.
-pub(super) fn of_user_texture(
+pub fn of_user_texture(
     target: TextureTarget,
     texture: &UserTexture,
     picture: usize,
@@ -107,6 +107,6 @@ pub(super) fn of_user_texture(
 }
 
 /// The flag where it is on.
-pub(super) fn flag(is_on: bool, flag: u32) -> u32 {
+pub fn flag(is_on: bool, flag: u32) -> u32 {
     if is_on { flag } else { 0 }
 }

@@ -136,8 +136,8 @@ fn python(text: &str) -> String {
 
 /// Numbers as Python's tuple.
 fn tuple(values: &[f32]) -> String {
-    let values: Vec<String> = values.iter().map(|x| format!("{:?}", x + 0.0)).collect();
-    format!("({})", values.join(", "))
+    let values = values.iter().map(|x| format!("{:?}", x + 0.0));
+    format!("({})", crate::named::joined(values, ", "))
 }
 
 fn call(surface: &Surface, textures: &[Carried<'_, String>], exact: &str) -> String {

@@ -19,7 +19,7 @@ use crate::{
 };
 
 /// Least cosine that reflectances are asked at: at 0 there is none.
-const COSINE_MIN: f64 = 1e-3;
+const COSINE_MIN: f64 = 0.001;
 
 pub fn write(subject: &Subject, path: &Path) -> Result<Written, ExchangeError> {
     let material = subject.only(path)?;

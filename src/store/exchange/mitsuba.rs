@@ -281,7 +281,7 @@ fn alphas(surface: &Surface, least: f32, maps: &mut Maps<'_>) -> String {
 fn conductor(material: &MaterialSettings, surface: &Surface, maps: &mut Maps<'_>) -> String {
     let tint = material.specular_color.map(|x| x * material.specular_weight);
     [
-        alphas(surface, 1e-4, maps),
+        alphas(surface, 0.0001, maps),
         rgb("eta", material.eta),
         rgb("k", material.k),
         maps.rgb("specular_reflectance", On::Specular, tint),
@@ -303,7 +303,7 @@ fn glass(surface: &Surface, maps: &mut Maps<'_>) -> (&'static str, String) {
         maps.rgb("specular_transmittance", On::BaseColor, through),
     ]
     .concat();
-    if surface.alphas()[0] < 1e-3 {
+    if surface.alphas()[0] < 0.001 {
         return ("dielectric", smooth);
     }
     ("roughdielectric", alphas(surface, 1e-4, maps) + &smooth)

@@ -26,6 +26,7 @@ use super::{FileError, Loaded, opened, opened::Opened, preset, replace::save_ato
 use crate::{
     document::{Document, ImportLobe, MaterialSettings},
     import::{ModelError, endings::ending},
+    named::joined,
     scene::{Loading, path_text::path_of_text},
 };
 
@@ -173,32 +174,36 @@ pub enum ExchangeError {
     #[error(transparent)]
     Model(#[from] ModelError),
     /// An ending that no format has.
-    #[error("{}: no format has this ending; the formats are {known}", path.display())]
+    #[error("{path}: no format has this ending; the formats are {known}")]
     Ending { path: PathBuf, known: String },
     /// A format that is only read.
-    #[error("{}: this format is only read; choose another ending", path.display())]
+    #[error("{path}: this format is only read; choose another ending")]
     NotWritten { path: PathBuf },
     /// A format that is only written.
-    #[error("{}: this format is only written; `glossmith fit --target` finds a material that looks like a measurement", path.display())]
+    #[error(
+        "{path}: this format is only written; `glossmith fit --target` finds a material that looks like a measurement"
+    )]
     NotRead { path: PathBuf },
     /// A file of another program that Glossmith did not write.
-    #[error("{}: has no exact parameters of Glossmith, which alone are read of this format; convert the material itself", path.display())]
+    #[error(
+        "{path}: has no exact parameters of Glossmith, which alone are read of this format; convert the material itself"
+    )]
     NothingCarried { path: PathBuf },
     /// Not what the ending says.
-    #[error("{}: not a {format} document: {reason}; export it again", path.display())]
+    #[error("{path}: not a {format} document: {reason}; export it again")]
     Contents {
         path: PathBuf,
         format: &'static str,
         reason: String,
     },
     /// No material in it that can be shown.
-    #[error("{}: has no material that can be taken: {reason}", path.display())]
+    #[error("{path}: has no material that can be taken: {reason}")]
     NoMaterial { path: PathBuf, reason: String },
     /// Several where one has a place.
-    #[error("{}: holds one material, and there are {count}: {names}; choose one with --material", path.display())]
+    #[error("{path}: holds one material, and there are {count}: {names}; choose one with --material")]
     Several { path: PathBuf, count: usize, names: String },
     /// A material that this format cannot hold.
-    #[error("{}: {reason}", path.display())]
+    #[error("{path}: {reason}")]
     Unsuitable { path: PathBuf, reason: String },
 }
 
@@ -217,11 +222,7 @@ impl Subject {
             several => Err(ExchangeError::Several {
                 path: path.to_owned(),
                 count: several.len(),
-                names: several
-                    .iter()
-                    .map(|material| material.name.as_str())
-                    .collect::<Vec<_>>()
-                    .join(", "),
+                names: joined(several.iter().map(|material| &material.name), ", "),
             }),
         }
     }
@@ -308,11 +309,10 @@ pub fn open(path: &Path, options: ReadOptions) -> Result<Opened, ExchangeError> 
         .map(Entry::to_string)
         .collect();
     if subject.materials.len() > 1 {
-        let others: Vec<&str> = subject.materials[1..].iter().map(|other| other.name.as_str()).collect();
         warnings.push(format!(
             "{} is taken; the others are {}: `glossmith convert --material` takes one of them out",
             material.name,
-            others.join(", ")
+            joined(subject.materials[1..].iter().map(|other| &other.name), ", ")
         ));
     }
     let message = |warning: String| format!("{}: {warning}", path.display());

@@ -151,12 +151,6 @@ impl MaterialReport {
         }
     }
 
-    /// The largest residual; 0 where nothing is approximated.
-    pub fn residual(&self) -> f64 {
-        let residuals = self.entries.iter().filter_map(|entry| entry.residual);
-        residuals.map(|residual| residual.residual).fold(0.0, f64::max)
-    }
-
     /// The worst that became of a part.
     pub fn worst(&self) -> Outcome {
         let outcomes = self.entries.iter().map(|entry| entry.outcome);

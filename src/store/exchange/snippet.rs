@@ -152,8 +152,8 @@ impl Language {
     /// A constant list of numbers, at the place that the language has for it.
     fn list(self, values: &[f32]) -> String {
         let suffix = if self == Self::C { "f" } else { "" };
-        let numbers: Vec<String> = values.iter().map(|x| format!("{x:?}{suffix}")).collect();
-        let (numbers, count) = (numbers.join(", "), values.len());
+        let numbers = crate::named::joined(values.iter().map(|x| format!("{x:?}{suffix}")), ", ");
+        let count = values.len();
         match self {
             Self::Glsl => format!("const float glossmith_curve[{count}] = float[{count}]({numbers});\n"),
             Self::Wgsl => format!("const glossmith_curve_values = array<f32, {count}>({numbers});\n"),

@@ -64,7 +64,7 @@ impl Takes {
 }
 
 /// Least difference that is worth a word.
-const NOTABLE: f64 = 1e-3;
+const NOTABLE: f64 = 0.001;
 /// Cosines at which reflectances are compared.
 const COSINES: usize = 64;
 

@@ -14,7 +14,7 @@ use crate::{
 };
 
 /// Files that are written beside a document.
-pub(super) struct Files {
+pub struct Files {
     /// What their names begin with, so that they replace nobody's.
     stem: String,
     /// Names of copies, by where they come from.
@@ -59,19 +59,19 @@ impl Files {
 }
 
 /// A texture that goes into a file.
-pub(super) struct Carried<'a, T> {
-    pub(super) target: TextureTarget,
-    pub(super) texture: &'a UserTexture,
+pub struct Carried<'a, T> {
+    pub target: TextureTarget,
+    pub texture: &'a UserTexture,
     /// Channel of a number, 0 to 3.
-    pub(super) channel: usize,
+    pub channel: usize,
     /// How steep the bumps of normals are; 1 of others.
-    pub(super) steepness: f32,
+    pub steepness: f32,
     /// What was made of it: the name of a file beside the document, or its image.
-    pub(super) made: T,
+    pub made: T,
 }
 
 /// Takes a material's own textures over that a format has a place for, and reports what becomes of all.
-pub(super) fn carry<'a, T>(
+pub fn carry<'a, T>(
     material: &'a MaterialSettings,
     report: &mut MaterialReport,
     (has_place, has_second_set): (impl Fn(TextureTarget) -> bool, bool),
@@ -116,11 +116,7 @@ fn missed(target: TextureTarget, texture: &UserTexture, has_second_set: bool) ->
 }
 
 impl<'a, T> Carried<'a, T> {
-    pub(super) fn of(
-        material: &MaterialSettings,
-        (target, texture): (TextureTarget, &'a UserTexture),
-        made: T,
-    ) -> Self {
+    pub fn of(material: &MaterialSettings, (target, texture): (TextureTarget, &'a UserTexture), made: T) -> Self {
         let has_alpha = target == TextureTarget::Opacity
             && mean_of_file(&texture.file, &Budget::of_import()).is_ok_and(|read| read.mean.codes[3] < 1.0);
         Self {
@@ -137,7 +133,7 @@ impl<'a, T> Carried<'a, T> {
     }
 
     /// What values are multiplied by, and what is added then; normals as they lie in [0, 1], this steep.
-    pub(super) fn affine(&self, steepness: f32) -> [[f32; 3]; 2] {
+    pub fn affine(&self, steepness: f32) -> [[f32; 3]; 2] {
         let UserTexture { strength, inverted, .. } = *self.texture;
         match (self.target.is_normal(), inverted) {
             (true, _) => {
@@ -151,7 +147,7 @@ impl<'a, T> Carried<'a, T> {
 
     /// What a texel is worth: linear light, a normal in [0, 1] with slopes as steep as they are here times `steepness`, or a number
     /// in all three places.
-    pub(super) fn value(&self, [r, g, b, a]: [f64; 4], steepness: f32) -> Vec3<f64> {
+    pub fn value(&self, [r, g, b, a]: [f64; 4], steepness: f32) -> Vec3<f64> {
         let mut value = vec3(r, g, b);
         if self.texture.is_srgb(self.target) && !self.target.is_normal() {
             value = linear_from_srgb(value);
@@ -165,12 +161,12 @@ impl<'a, T> Carried<'a, T> {
 }
 
 /// Repetitions along u and v.
-pub(super) fn scale(texture: &UserTexture) -> DVec2 {
+pub fn scale(texture: &UserTexture) -> DVec2 {
     f64::from(texture.scale) * DVec2::new(1.0, f64::from(texture.stretch))
 }
 
 /// What a texture does to coordinates whose v points upwards: turned about the middle, then scaled, then moved.
-pub(super) fn mapping(texture: &UserTexture) -> DAffine2 {
+pub fn mapping(texture: &UserTexture) -> DAffine2 {
     let middle = DVec2::splat(0.5);
     DAffine2::from_translation(middle - DVec2::from(texture.offset.map(f64::from)))
         * DAffine2::from_scale(scale(texture))
@@ -179,9 +175,9 @@ pub(super) fn mapping(texture: &UserTexture) -> DAffine2 {
 }
 
 /// Places a texture so, the inverse of [`mapping`]; false where it would be sheared or mirrored.
-pub(super) fn place(texture: &mut UserTexture, mapping: DAffine2) -> bool {
+pub fn place(texture: &mut UserTexture, mapping: DAffine2) -> bool {
     let [along, up] = [0, 1].map(|row| mapping.matrix2.row(row));
-    let is_square = along.dot(up).abs() <= 1e-4 * along.length() * up.length();
+    let is_square = along.dot(up).abs() <= 0.0001 * along.length() * up.length();
     let is_placed = is_square && mapping.matrix2.determinant() > 0.0;
     if is_placed {
         let middle = DVec2::splat(0.5);

@@ -2,13 +2,13 @@
 
 use std::collections::HashMap;
 
-pub(super) use crate::import::xml::parse;
+pub use crate::import::xml::parse;
 
 /// What stands before the elements of a document.
-pub(super) const HEAD: &str = "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n";
+pub const HEAD: &str = "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n";
 
 /// An element of this name and these attributes, with others in it, each on lines of its own.
-pub(super) fn element(head: &str, inside: &str) -> String {
+pub fn element(head: &str, inside: &str) -> String {
     if inside.is_empty() {
         return format!("<{head} />\n");
     }
@@ -18,7 +18,7 @@ pub(super) fn element(head: &str, inside: &str) -> String {
 }
 
 /// Text as an attribute's value. Control characters, which XML has no place for, are left out.
-pub(super) fn escaped(text: &str) -> String {
+pub fn escaped(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for c in text.chars() {
         match c {
@@ -37,7 +37,7 @@ pub(super) fn escaped(text: &str) -> String {
 
 /// A name of letters, digits and underscores that begins with a letter and is not among `taken`, to which it is added. There each name
 /// has the number that is tried next for one like it.
-pub(super) fn identifier(name: &str, taken: &mut HashMap<String, usize>) -> String {
+pub fn identifier(name: &str, taken: &mut HashMap<String, usize>) -> String {
     let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
     let mut base: String = name.trim().chars().map(plain).collect();
     if !base.starts_with(|c: char| c.is_ascii_alphabetic()) {
@@ -55,8 +55,7 @@ pub(super) fn identifier(name: &str, taken: &mut HashMap<String, usize>) -> Stri
 }
 
 /// Numbers with a comma and a blank between them.
-pub(super) fn numbers(values: &[f32]) -> String {
+pub fn numbers(values: &[f32]) -> String {
     // Without a sign before 0.
-    let texts: Vec<String> = values.iter().map(|x| (x + 0.0).to_string()).collect();
-    texts.join(", ")
+    crate::named::joined(values.iter().map(|x| x + 0.0), ", ")
 }

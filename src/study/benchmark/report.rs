@@ -16,10 +16,10 @@ pub const SCHEMA_VERSION: u32 = 2;
 #[derive(Debug, thiserror::Error)]
 pub enum ReportError {
     /// The system cannot read the file.
-    #[error("{}: cannot be read: {_1}; check the path and its permissions", _0.display())]
+    #[error("{0}: cannot be read: {1}; check the path and its permissions")]
     Read(PathBuf, io::Error),
     /// Something else than a report, or one of another version.
-    #[error("{}: {_1}; make one with glossmith benchmark --json", _0.display())]
+    #[error("{0}: {1}; make one with glossmith benchmark --json")]
     Invalid(PathBuf, String),
 }
 

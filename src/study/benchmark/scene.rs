@@ -61,7 +61,7 @@ impl SoftBox {
         let normal = self.centre.normalize();
         let right = DVec3::Y.cross(normal).normalize();
         let towards = direction.dot(normal);
-        if towards <= 1e-3 {
+        if towards <= 0.001 {
             return DVec3::ZERO;
         }
         let place = direction * (self.centre.length() / towards);

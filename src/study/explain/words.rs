@@ -106,8 +106,8 @@ impl PathAccount {
     fn field(&self, name: &str, value: &Json) -> String {
         match value {
             Json::Array(parts) => {
-                let parts: Vec<String> = parts.iter().map(|part| self.field("", part)).collect();
-                format!("({})", parts.join(", "))
+                let parts = parts.iter().map(|part| self.field("", part));
+                format!("({})", crate::named::joined(parts, ", "))
             }
             Json::String(word) => {
                 let row = WORDS.iter().find(|row| row.0 == name && row.1 == word);

@@ -27,7 +27,7 @@ const PAIRS: [usize; 2] = [1_000_000, 10_000];
 const DOCUMENTS: [usize; 2] = [250, 10];
 /// Densities of the light's sample, per steradian: the weights of the competing strategies are tried, too.
 const LIGHT_DENSITIES: [f32; 3] = [0.08, 10.0, 1e6];
-const COSINES: [f32; 5] = [1.0, 0.7, 0.2, 1e-3, 1e-6];
+const COSINES: [f32; 5] = [1.0, 0.7, 0.2, 0.001, 1e-6];
 
 macro_rules! cases {
     ($($module:ident $lobe:ident = $index:literal, $name:literal, $label:literal, $help:literal;)*) => {
@@ -109,7 +109,7 @@ fn random_material(numbers: &mut Numbers) -> MaterialSettings {
 fn random_question(numbers: &mut Numbers, material: u32, shape: &LobeShape<'_, f32>) -> MaterialQuestion {
     let normal = numbers.direction();
     let around = frame_from_normal(normal);
-    let height = numbers.unit().max(1e-3);
+    let height = numbers.unit().max(0.001);
     let across = (1.0 - height * height).sqrt();
     let phi_rad = std::f32::consts::TAU * numbers.unit();
     let wo = world_from_local(&around, vec3(across * phi_rad.cos(), across * phi_rad.sin(), height)).normalize();

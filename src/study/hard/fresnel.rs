@@ -13,7 +13,7 @@ const COSINES: [f32; 14] = [
     1e-30,
     1e-7,
     1e-5,
-    1e-3,
+    0.001,
     0.01,
     0.05,
     0.2,
@@ -49,7 +49,7 @@ cases! {
         "the share reflected is that of complex amplitudes in f64"
         "3108 of 10026 are NaN",
         "error" // The rounding of the thickest film's phase, 350 rad.
-        2e-4, |stage| {
+        0.0002, |stage| {
             let sides = |ior: f32| [(1.0, ior, 0.0), (ior, 1.0 / ior, 0.0)];
             worst(stage, &films(2, &[1.0, 1.33, 1.5, 2.42].map(sides).concat()))
         };
@@ -78,7 +78,7 @@ cases! {
         "the share is 1 beyond, that of f64 before, with nothing in between"
         "40 of 81 are NaN",
         "error" // The reflectance has a vertical tangent there: this is the effect of one rounding of the cosine.
-        2e-3, |stage| {
+        0.002, |stage| {
             let ior = 1.0 / 1.5;
             let critical = (1.0 - f64::from(ior) * f64::from(ior)).sqrt() as f32;
             let around = (-40..=40).map(|step: i32| f32::from_bits(critical.to_bits().wrapping_add_signed(step)));

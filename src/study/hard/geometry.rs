@@ -19,9 +19,9 @@ use crate::{
 };
 
 /// Largest difference of an image's mean under a change of scale or position: silhouettes by a rounding.
-const SAME_PICTURE: f64 = 1e-3;
+const SAME_PICTURE: f64 = 0.001;
 /// The most that a pixel of the white furnace may be off.
-const WHITE: f64 = 5e-3;
+const WHITE: f64 = 0.005;
 
 cases! {
     "geometry"

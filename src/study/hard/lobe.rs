@@ -21,14 +21,14 @@ const XI_ENDS: [f32; 4] = [0.0, 1.0 / 16_777_216.0, 1.0 / 4_294_967_296.0, 1.0 -
 const ROUGHNESS: [f32; 12] = [
     0.0,
     1e-7,
-    1e-4,
-    1e-3,
+    0.0001,
+    0.001,
     0.03,
     0.3,
     0.7,
     0.97,
     0.999,
-    1.0 - 1e-4,
+    1.0 - 0.0001,
     1.0 - 1.2e-7,
     1.0,
 ];
@@ -94,7 +94,7 @@ cases! {
             ];
             count_broken(
                 stage,
-                &grid(&tail, &[1e-3, 0.03, 0.3, 0.97, 1.0], &[0.0, 60.0, 85.0, 90.0], &ends),
+                &grid(&tail, &[0.001, 0.03, 0.3, 0.97, 1.0], &[0.0, 60.0, 85.0, 90.0], &ends),
             )
         };
     "curves-flat-and-steep"
@@ -109,7 +109,7 @@ cases! {
                     (Lobe::Geometric, Curve::Custom, 0.0),
                     (Lobe::Geometric, Curve::Custom, -1.0),
                 ];
-                let asked = grid(&custom, &[1e-3, 0.03, 0.5, 0.97, 1.0], &[0.0, 60.0, 89.99], &xi_ends());
+                let asked = grid(&custom, &[0.001, 0.03, 0.5, 0.97, 1.0], &[0.0, 60.0, 89.99], &xi_ends());
                 let length = crate::optics::curve::CUSTOM_LENGTH as u32;
                 questions.extend(asked.into_iter().map(|question| LobeQuestion {
                     table: which * length,
@@ -344,8 +344,8 @@ fn singular_directions(question: &LobeQuestion) -> Vec<Vec3<f32>> {
         let across = around.tangent * cos + around.bitangent * sin;
         let level = frame.tangent * cos + frame.bitangent * sin;
         let at = |angle_rad: f64| middle * angle_rad.cos() + across * angle_rad.sin();
-        directions.extend([1e-7, 1e-6, 1e-4, 1e-3].map(at));
-        directions.extend([-1e-7, -1e-20, 0.0, 1e-20, 1e-7, 1e-3].map(|height| level + normal * height));
+        directions.extend([1e-7, 1e-6, 0.0001, 0.001].map(at));
+        directions.extend([-1e-7, -1e-20, 0.0, 1e-20, 1e-7, 0.001].map(|height| level + normal * height));
         let (mut inside, mut outside) = (0.0, std::f64::consts::PI);
         for _ in 0..40 {
             let half = 0.5 * (inside + outside);

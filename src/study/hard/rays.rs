@@ -102,7 +102,7 @@ pub fn axis_rays(stage: &Stage) -> Result<f64, StudyError> {
 /// Rays that leave a convex mesh outwards and inwards: number of wrong hits and misses.
 pub fn leaving_rays(stage: &Stage) -> Result<f64, StudyError> {
     let mut wrong = 0.0;
-    for radius in [1.0, 1e-3] {
+    for radius in [1.0, 0.001] {
         let mut mesh = shapes::sphere(48, 24);
         for place in &mut mesh.positions {
             *place = *place * radius + DVec3::new(0.6, 0.5, 0.3) * f64::from(u8::from(radius < 1.0));
@@ -131,7 +131,7 @@ pub fn leaving_rays(stage: &Stage) -> Result<f64, StudyError> {
                 .cross(corners[2] - corners[0])
                 .normalize_or(Vec3::Y);
             // Half of the directions graze; in the plane itself, by rounding, no side is the right one.
-            let flat = if i % 2 == 0 { 1.0 } else { 1e-3 };
+            let flat = if i % 2 == 0 { 1.0 } else { 0.001 };
             let along = direction(i);
             let height = normal.dot(along);
             let out = (along - normal * height + normal * (height.abs() * flat).max(1e-5)).normalize_or(normal);

@@ -16,7 +16,7 @@ use crate::{
     },
     job::{effect::EffectId, plan::Plan},
     matching::{lobe_of_material, matched_lobe_and_curve},
-    named::Named,
+    named::{Named, joined},
     optics::{curve::Curve, lobe::Lobe, random::Sequence},
 };
 
@@ -77,7 +77,7 @@ impl Group {
             "effect" => {
                 let names = |switch: Switch| {
                     let possible = EFFECTS.iter().filter(|effect| effect.can_be(switch));
-                    possible.map(Effect::name).collect::<Vec<_>>().join(", ")
+                    joined(possible.map(Effect::name), ", ")
                 };
                 format!(
                     "+NAME of one of {}, or -NAME of one of {}",
@@ -254,7 +254,7 @@ impl Technique {
             return "Current settings".to_owned();
         }
         let label = |setting: &Setting| (Group::by_name(setting.group)?.label_of)(&setting.value);
-        self.0.iter().filter_map(label).collect::<Vec<_>>().join(", ")
+        joined(self.0.iter().filter_map(label), ", ")
     }
 }
 
@@ -287,7 +287,7 @@ pub fn converged(document: &Document) -> Document {
 /// A technique that is not understood.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TechniqueError {
-    #[error("{0} is no kind of setting; there are {names}", names = GROUPS.iter().map(|group| group.name).collect::<Vec<_>>().join(", "))]
+    #[error("{0} is no kind of setting; there are {names}", names = joined(GROUPS.iter().map(|group| group.name), ", "))]
     Group(String),
     #[error("{group}={value} is no setting; give {expected}")]
     Value {
@@ -320,12 +320,8 @@ impl fmt::Display for Technique {
         if self.0.is_empty() {
             return f.write_str(AS_IS);
         }
-        let settings: Vec<String> = self
-            .0
-            .iter()
-            .map(|Setting { group, value }| format!("{group}={value}"))
-            .collect();
-        f.write_str(&settings.join(","))
+        let settings = self.0.iter().map(|Setting { group, value }| format!("{group}={value}"));
+        f.write_str(&joined(settings, ","))
     }
 }
 

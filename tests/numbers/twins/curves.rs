@@ -155,32 +155,18 @@ fn fresnel_factors_agree() {
                 "half_vector_cosine",
                 "wo wi",
                 "",
-                twin!(|row| {
-                    let (wo, wi) = (row.vector(), row.vector());
-                    row.put(half_vector_cosine(wo, wi));
-                }),
+                twin!(vector wo, vector wi => put(half_vector_cosine(wo, wi))),
             )
             .number("half_vector_cosine(wo, wi)", 0.1)
             .group("", |rng, _| inputs![rng.direction(), rng.direction()]),
-            Case::new(
-                "fresnel_f0",
-                "ior",
-                "",
-                twin!(|row| {
-                    let ior = row.number();
-                    row.put(fresnel_f0(ior));
-                }),
-            )
-            .output("fresnel_f0(ior)", share)
-            .group("", |rng, _| inputs![ior(rng)]),
+            Case::new("fresnel_f0", "ior", "", twin!(number ior => put(fresnel_f0(ior))))
+                .output("fresnel_f0(ior)", share)
+                .group("", |rng, _| inputs![ior(rng)]),
             Case::new(
                 "fresnel_schlick",
                 "f0 cosine",
                 "",
-                twin!(|row| {
-                    let (f0, cosine) = (row.vector(), row.number());
-                    row.put_vector(fresnel_schlick(f0, cosine));
-                }),
+                twin!(vector f0, number cosine => put_vector(fresnel_schlick(f0, cosine))),
             )
             .output("fresnel_schlick(f0, cosine)", shares)
             .group("", |rng, _| {
@@ -190,10 +176,7 @@ fn fresnel_factors_agree() {
                 "fresnel_dielectric",
                 "cosine ior",
                 "",
-                twin!(|row| {
-                    let [cosine, ior] = row.numbers();
-                    row.put(fresnel_dielectric(cosine, ior));
-                }),
+                twin!(numbers [cosine, ior] => put(fresnel_dielectric(cosine, ior))),
             )
             .output("fresnel_dielectric(cosine, ior)", share)
             .group("", |rng, _| inputs![Value::Unit(rng.unit()), ior(rng)]),
@@ -201,10 +184,7 @@ fn fresnel_factors_agree() {
                 "fresnel_conductor",
                 "cosine eta k",
                 "",
-                twin!(|row| {
-                    let [cosine, eta, k] = row.numbers();
-                    row.put(fresnel_conductor(cosine, eta, k));
-                }),
+                twin!(numbers [cosine, eta, k] => put(fresnel_conductor(cosine, eta, k))),
             )
             .output("fresnel_conductor(cosine, eta, k)", share)
             .group("metals", |rng, _| {

@@ -25,58 +25,31 @@ fn elementary_functions_agree() {
     check(
         &["optics/numeric"],
         &[
-            Case::new(
-                "expm1",
-                "x",
-                "",
-                twin!(|row| {
-                    let x = row.number();
-                    row.put(expm1(x));
-                }),
-            )
-            .output("expm1(x)", relative)
-            .group("small", |rng, _| inputs![signed(rng, 1e-9, 0.02)])
-            .group("large", |rng, _| inputs![rng.range(-40.0, 20.0)]),
-            Case::new(
-                "log1p",
-                "x",
-                "",
-                twin!(|row| {
-                    let x = row.number();
-                    row.put(log1p(x));
-                }),
-            )
-            .output("log1p(x)", relative)
-            .group("small", |rng, _| inputs![signed(rng, 1e-9, 0.02)])
-            .group("large", |rng, _| inputs![rng.log_range(0.01, 1e9)])
-            .group("negative", |rng, _| inputs![-rng.range(0.005, 0.995)]),
+            Case::new("expm1", "x", "", twin!(number x => put(expm1(x))))
+                .output("expm1(x)", relative)
+                .group("small", |rng, _| inputs![signed(rng, 1e-9, 0.02)])
+                .group("large", |rng, _| inputs![rng.range(-40.0, 20.0)]),
+            Case::new("log1p", "x", "", twin!(number x => put(log1p(x))))
+                .output("log1p(x)", relative)
+                .group("small", |rng, _| inputs![signed(rng, 1e-9, 0.02)])
+                .group("large", |rng, _| inputs![rng.log_range(0.01, 1e9)])
+                .group("negative", |rng, _| inputs![-rng.range(0.005, 0.995)]),
             Case::new(
                 "sampled_share",
                 "share",
                 "",
-                twin!(|row| {
-                    let share = row.number();
-                    row.put(sampled_share(share));
-                }),
+                twin!(number share => put(sampled_share(share))),
             )
             .output("sampled_share(share)", relative)
             .group("any", |rng, _| inputs![rng.unit()])
             .group("small", |rng, _| inputs![rng.log_range(1e-9, 0.1)]),
-            Case::new(
-                "arctan2",
-                "y x",
-                "",
-                twin!(|row| {
-                    let [y, x] = row.numbers();
-                    row.put(y.atan2(x));
+            Case::new("arctan2", "y x", "", twin!(numbers [y, x] => put(y.atan2(x))))
+                .output("arctan2(y, x)", relative)
+                .group("", |rng, _| inputs![signed(rng, 1e-6, 1e3), signed(rng, 1e-6, 1e3)])
+                .group("directions", |rng, _| {
+                    let d = rng.direction();
+                    inputs![d.y, d.x + 1e-9]
                 }),
-            )
-            .output("arctan2(y, x)", relative)
-            .group("", |rng, _| inputs![signed(rng, 1e-6, 1e3), signed(rng, 1e-6, 1e3)])
-            .group("directions", |rng, _| {
-                let d = rng.direction();
-                inputs![d.y, d.x + 1e-9]
-            }),
             Case::new(
                 "unit_circle",
                 "turns",
@@ -91,39 +64,22 @@ fn elementary_functions_agree() {
             .number("unit_circle(turns).y", 1.0)
             .group("a turn", |rng, _| inputs![rng.range(-1.0, 1.0)])
             .group("small", |rng, _| inputs![signed(rng, 1e-9, 0.1)]),
-            Case::new(
-                "safe_sqrt",
-                "x",
-                "",
-                twin!(|row| {
-                    let x = row.number();
-                    row.put(x.safe_sqrt());
+            Case::new("safe_sqrt", "x", "", twin!(number x => put(x.safe_sqrt())))
+                .output("safe_sqrt(x)", relative)
+                .group("", |rng, _| inputs![signed(rng, 1e-12, 1e6)]),
+            Case::new("luminance", "colour", "", twin!(vector v => put(v.luminance())))
+                .number("luminance(colour)", 0.01)
+                .group("", |rng, _| {
+                    inputs![Value::Vector([rng.unit(), rng.unit(), rng.unit()])]
                 }),
-            )
-            .output("safe_sqrt(x)", relative)
-            .group("", |rng, _| inputs![signed(rng, 1e-12, 1e6)]),
-            Case::new(
-                "luminance",
-                "colour",
-                "",
-                twin!(|row| {
-                    let v = row.vector();
-                    row.put(v.luminance());
-                }),
-            )
-            .number("luminance(colour)", 0.01)
-            .group("", |rng, _| {
-                inputs![Value::Vector([rng.unit(), rng.unit(), rng.unit()])]
-            }),
             Case::new(
                 "normalize_or",
                 "x y z fallback",
                 "",
-                twin!(|row| {
-                    let [x, y, z] = row.numbers();
-                    let fallback = row.vector();
-                    row.put_vector(normalize_or(glossmith::optics::vector::vec3(x, y, z), fallback));
-                }),
+                twin!(
+                    numbers [x, y, z], vector fallback =>
+                    put_vector(normalize_or(glossmith::optics::vector::vec3(x, y, z), fallback))
+                ),
             )
             .output("normalize_or(vec3f(x, y, z), fallback)", Output::Vector(1.0))
             .group("usable", |rng, _| {
@@ -179,17 +135,9 @@ fn random_numbers_are_equal_to_the_bit() {
     check(
         &["optics/random"],
         &[
-            Case::new(
-                "hash_bits",
-                "bits",
-                "",
-                twin!(|row| {
-                    let x = row.bits();
-                    row.put_bits(hash_bits(x));
-                }),
-            )
-            .exact("hash_bits(bits)")
-            .group("", |rng, _| inputs![counter(rng)]),
+            Case::new("hash_bits", "bits", "", twin!(bits x => put_bits(hash_bits(x))))
+                .exact("hash_bits(bits)")
+                .group("", |rng, _| inputs![counter(rng)]),
             Case::new(
                 "unit_from_bits",
                 "bits",
@@ -227,10 +175,7 @@ fn random_numbers_are_equal_to_the_bit() {
                 "sobol_second_reversed",
                 "index",
                 "",
-                twin!(|row| {
-                    let x = row.bits();
-                    row.put_bits(sobol_second_reversed(x));
-                }),
+                twin!(bits x => put_bits(sobol_second_reversed(x))),
             )
             .exact("sobol_second_reversed(index)")
             .group("", |rng, _| inputs![counter(rng)]),
@@ -298,10 +243,7 @@ fn warps_agree() {
                 "uniform_sphere",
                 "a b",
                 "",
-                twin!(|row| {
-                    let xi = row.numbers();
-                    row.put_vector(uniform_sphere(xi));
-                }),
+                twin!(numbers xi => put_vector(uniform_sphere(xi))),
             )
             .output("uniform_sphere(vec2f(a, b))", Output::Vector(1.0))
             .group("", |rng, _| units(rng).into()),
@@ -309,10 +251,7 @@ fn warps_agree() {
                 "uniform_disc",
                 "a b",
                 "let place = uniform_disc(vec2f(a, b));",
-                twin!(|row| {
-                    let xi = row.numbers();
-                    row.put_numbers(uniform_disc(xi));
-                }),
+                twin!(numbers xi => put_numbers(uniform_disc(xi))),
             )
             .number("place.x", 1.0)
             .number("place.y", 1.0)
@@ -417,10 +356,7 @@ fn frames_agree() {
                 "mirrored_about",
                 "direction axis",
                 "",
-                twin!(|row| {
-                    let (d, axis) = (row.vector(), row.vector());
-                    row.put_vector(d.mirrored_about(axis));
-                }),
+                twin!(vector d, vector axis => put_vector(d.mirrored_about(axis))),
             )
             .output("mirrored_about(direction, axis)", unit)
             .group("", |rng, _| inputs![rng.direction(), rng.direction()]),
@@ -428,10 +364,7 @@ fn frames_agree() {
                 "reflected_at_plane",
                 "direction normal",
                 "",
-                twin!(|row| {
-                    let (d, n) = (row.vector(), row.vector());
-                    row.put_vector(d.reflected_at_plane(n));
-                }),
+                twin!(vector d, vector n => put_vector(d.reflected_at_plane(n))),
             )
             .output("reflected_at_plane(direction, normal)", unit)
             .group("", |rng, _| inputs![rng.direction(), rng.direction()]),

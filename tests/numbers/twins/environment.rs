@@ -29,10 +29,10 @@ fn environments_agree() {
                 "environment_local_from_…",
                 "direction cosine sine",
                 "",
-                twin!(|row| {
-                    let (direction, rotation) = (row.vector(), row.numbers());
-                    row.put_vector(environment_local_from_world(direction, rotation));
-                }),
+                twin!(
+                    vector direction, numbers rotation =>
+                    put_vector(environment_local_from_world(direction, rotation))
+                ),
             )
             .output("environment_local_from_world(direction, vec2f(cosine, sine))", UNIT)
             .group("", |rng, _| direction_and_rotation(rng)),
@@ -40,10 +40,10 @@ fn environments_agree() {
                 "environment_world_from_…",
                 "direction cosine sine",
                 "",
-                twin!(|row| {
-                    let (direction, rotation) = (row.vector(), row.numbers());
-                    row.put_vector(environment_world_from_local(direction, rotation));
-                }),
+                twin!(
+                    vector direction, numbers rotation =>
+                    put_vector(environment_world_from_local(direction, rotation))
+                ),
             )
             .output("environment_world_from_local(direction, vec2f(cosine, sine))", UNIT)
             .group("", |rng, _| direction_and_rotation(rng)),
@@ -51,10 +51,7 @@ fn environments_agree() {
                 "environment_uv",
                 "direction",
                 "let uv = environment_uv(direction);",
-                twin!(|row| {
-                    let direction = row.vector();
-                    row.put_numbers(environment_uv(direction));
-                }),
+                twin!(vector direction => put_numbers(environment_uv(direction))),
             )
             .number("uv.x", 1.0)
             .number("uv.y", 1.0)
@@ -63,10 +60,7 @@ fn environments_agree() {
                 "environment_radiance",
                 "direction",
                 "",
-                twin!(|row| {
-                    let direction = row.vector();
-                    row.put_vector(environment_radiance(&SCENE.environment, direction));
-                }),
+                twin!(vector direction => put_vector(environment_radiance(&SCENE.environment, direction))),
             )
             // The studio's soft boxes have radiances of several units.
             .output("environment_radiance(direction)", Output::Vector(0.1))
@@ -157,11 +151,7 @@ fn cameras_agree() {
                 "filter_offset",
                 "kind a b",
                 "let offset = filter_offset(kind, vec2f(a, b));",
-                twin!(|row| {
-                    let kind = row.bits();
-                    let xi = row.numbers();
-                    row.put_numbers(filter_offset(kind, xi));
-                }),
+                twin!(bits kind, numbers xi => put_numbers(filter_offset(kind, xi))),
             )
             .number("offset.x", 0.5)
             .number("offset.y", 0.5)

@@ -118,7 +118,7 @@ impl From<u32> for Value {
 macro_rules! inputs {
     ($($value:expr),* $(,)?) => { vec![$($crate::twins::harness::Value::from($value)),*] };
 }
-pub(super) use inputs;
+pub(crate) use inputs;
 
 impl Value {
     fn wgsl_type(self) -> (&'static str, usize) {
@@ -260,8 +260,15 @@ macro_rules! twin {
         fn twin<T: glossmith::optics::real::Scalar>($row: &mut $crate::twins::harness::Row<'_, T>) $body
         $crate::twins::harness::Twin::generic(twin::<f32>, twin::<f64>)
     }};
+    // What is read, and what is put.
+    ($($kind:ident $name:pat_param),+ => $($put:ident($value:expr)),+) => {
+        twin!(|row| {
+            $(let $name = row.$kind();)+
+            $(row.$put($value);)+
+        })
+    };
 }
-pub(super) use twin;
+pub(crate) use twin;
 
 /// Draws the inputs of one call; also told its number.
 type Draw = Box<dyn Fn(&mut Rng, usize) -> Vec<Value> + Sync>;

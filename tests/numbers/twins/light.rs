@@ -66,10 +66,7 @@ fn lights_agree() {
                 "spot_share",
                 "cosine",
                 "",
-                twin!(|row| {
-                    let cosine = row.number();
-                    row.put(spot_share(&materials()[0], cosine));
-                }),
+                twin!(number cosine => put(spot_share(&materials()[0], cosine))),
             )
             .number("spot_share(material_at(0u), cosine)", 1.0)
             .group("", |rng, _| inputs![rng.range(-1.0, 1.0)]),
@@ -77,10 +74,10 @@ fn lights_agree() {
                 "light_density",
                 "light_luminance cosine distance",
                 "",
-                twin!(|row| {
-                    let [luminance, cosine, distance] = row.numbers();
-                    row.put(light_density(luminance, cosine, distance, density_per_luminance()));
-                }),
+                twin!(
+                    numbers [luminance, cosine, distance] =>
+                    put(light_density(luminance, cosine, distance, density_per_luminance()))
+                ),
             )
             .number("light_density(light_luminance, cosine, distance)", 0.0)
             .group("", |rng, _| {

@@ -218,7 +218,7 @@ macro_rules! shape_and_view {
         )
     };
 }
-pub(super) use shape_and_view;
+pub(crate) use shape_and_view;
 
 #[test]
 fn lobes_agree() {
@@ -329,10 +329,7 @@ fn shapes_agree() {
                 "alpha_from_roughness",
                 "roughness",
                 "",
-                twin!(|row| {
-                    let r = row.number();
-                    row.put(alpha_from_roughness(r));
-                }),
+                twin!(number r => put(alpha_from_roughness(r))),
             )
             .number("alpha_from_roughness(roughness)", 0.0)
             .group("", |rng, _| inputs![rng.log_range(1e-3, 1.0)]),
@@ -340,10 +337,7 @@ fn shapes_agree() {
                 "stretch_from_anisotropy",
                 "anisotropy",
                 "",
-                twin!(|row| {
-                    let s = row.number();
-                    row.put(stretch_from_anisotropy(s));
-                }),
+                twin!(number s => put(stretch_from_anisotropy(s))),
             )
             .number("stretch_from_anisotropy(anisotropy)", 0.0)
             .group("", |rng, _| inputs![rng.range(-1.2, 1.2)]),

@@ -215,10 +215,7 @@ fn materials_agree() {
                 "albedo_place",
                 "cosine eta",
                 "",
-                twin!(|row| {
-                    let [cosine, eta] = row.numbers();
-                    row.put(albedo_place(cosine, eta));
-                }),
+                twin!(numbers [cosine, eta] => put(albedo_place(cosine, eta))),
             )
             .number("albedo_place(cosine, eta)", 0.1)
             .group("", |rng, _| inputs![Value::Unit(rng.unit()), rng.range(0.4, 1.5)]),

@@ -77,10 +77,7 @@ fn refraction_agrees() {
                 "facet_refracted",
                 "wo mirrored eta",
                 "",
-                twin!(|row| {
-                    let (wo, mirrored, eta) = (row.vector(), row.vector(), row.number());
-                    row.put_vector(facet_refracted(wo, mirrored, eta).wi);
-                }),
+                twin!(vector wo, vector mirrored, number eta => put_vector(facet_refracted(wo, mirrored, eta).wi)),
             )
             .output("facet_refracted(wo, mirrored, eta).wi", UNIT)
             .group_of("", 16_000, |rng, _| mirrored_directions(rng)),

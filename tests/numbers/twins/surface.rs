@@ -120,10 +120,7 @@ fn surfaces_agree() {
                 "bent_normal",
                 "shading wo",
                 "",
-                twin!(|row| {
-                    let (shading, wo) = (row.vector(), row.vector());
-                    row.put_vector(bent_normal(shading, wo));
-                }),
+                twin!(vector shading, vector wo => put_vector(bent_normal(shading, wo))),
             )
             .output("bent_normal(shading, wo)", UNIT)
             .group("", |rng, _| inputs![rng.direction(), rng.direction()]),
@@ -131,10 +128,10 @@ fn surfaces_agree() {
                 "lifted_normal",
                 "shading geometric wo",
                 "",
-                twin!(|row| {
-                    let (shading, geometric, wo) = (row.vector(), row.vector(), row.vector());
-                    row.put_vector(lifted_normal(shading, geometric, wo));
-                }),
+                twin!(
+                    vector shading, vector geometric, vector wo =>
+                    put_vector(lifted_normal(shading, geometric, wo))
+                ),
             )
             .output("lifted_normal(shading, geometric, wo)", UNIT)
             .group_of("", 16_000, |rng, _| {

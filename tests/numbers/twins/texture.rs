@@ -55,11 +55,7 @@ fn textures_agree() {
         "wrapped",
         "wrap place",
         "",
-        twin!(|row| {
-            let wrap = row.bits();
-            let place = row.number();
-            row.put(wrapped(place, wrap));
-        }),
+        twin!(bits wrap, number place => put(wrapped(place, wrap))),
     )
     .output("wrapped(place, wrap)", SHARE);
     for mode in 0..3u32 {

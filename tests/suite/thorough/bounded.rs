@@ -67,7 +67,7 @@ fn write_square(place: &Workplace, name: &str, change: impl FnOnce(&mut Json)) {
     document["buffers"][0]["uri"] = json!("square.bin");
     place.write("square.bin", &buffer.bytes);
     change(&mut document);
-    place.write(name, document.to_string().as_bytes());
+    place.write(name, document.to_string());
 }
 
 #[test]
@@ -90,7 +90,7 @@ fn a_polygon_of_a_hundred_thousand_corners_is_loaded_in_seconds() {
     }
     ply.extend((MANY as u32).to_le_bytes());
     (0..MANY as u32).for_each(|i| ply.extend(i.to_le_bytes()));
-    place.write("gon.obj", (obj + &face + "\n").as_bytes());
+    place.write("gon.obj", obj + &face + "\n");
     place.write("gon.ply", &ply);
     done(&place, &format!("render gon.obj {QUICK}"));
     done(&place, &format!("render gon.ply {QUICK}"));
@@ -104,14 +104,10 @@ fn a_hundred_thousand_materials_are_loaded_in_seconds_or_refused() {
         "m.mtl",
         names()
             .map(|name| format!("newmtl {name}\nKd 0.5 0.5 0.5\n"))
-            .collect::<String>()
-            .as_bytes(),
+            .collect::<String>(),
     );
     let faces: String = names().map(|name| format!("usemtl {name}\nf 1 2 3\n")).collect();
-    place.write(
-        "m.obj",
-        format!("mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\n{faces}").as_bytes(),
-    );
+    place.write("m.obj", format!("mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\n{faces}"));
     done(&place, &format!("render m.obj {QUICK}"));
     write_square(&place, "m.gltf", |document| {
         document["materials"] = names().map(|name| json!({"name": name})).collect();
@@ -125,7 +121,7 @@ fn a_hundred_thousand_materials_are_loaded_in_seconds_or_refused() {
     });
     done(&place, &format!("render m.gltf {QUICK}"));
     let project = json!({"glossmith-document": 1, "materials": vec![json!({}); MANY]});
-    place.write("m.json", project.to_string().as_bytes());
+    place.write("m.json", project.to_string());
     place.refused(
         1,
         &format!("render m.json {QUICK}"),
@@ -150,7 +146,7 @@ fn extras_of_any_size_are_passed_over() {
         document["nodes"][0]["extras"] = json!("HERE")
     });
     let numbers = format!("[0{}]", ",0".repeat(20_000_000));
-    place.write("m.gltf", place.read("m.gltf").replace("\"HERE\"", &numbers).as_bytes());
+    place.write("m.gltf", place.read("m.gltf").replace("\"HERE\"", &numbers));
     done(&place, &format!("render m.gltf {QUICK}"));
     done(&place, "convert m.gltf out.json");
 }
@@ -167,7 +163,7 @@ fn a_chain_of_a_million_nodes_is_followed_to_its_end_and_a_circle_is_told() {
     ] {
         write_square(&place, name, |document| document["nodes"] = json!("HERE"));
         let nodes = format!("[{chain}{last}]");
-        place.write(name, place.read(name).replace("\"HERE\"", &nodes).as_bytes());
+        place.write(name, place.read(name).replace("\"HERE\"", &nodes));
         let said = done(&place, &format!("render {name} {QUICK}"));
         assert_eq!(said.contains("its own ancestor"), name == "circle.gltf", "{said}");
     }
@@ -192,7 +188,7 @@ fn a_graph_whose_nodes_are_used_twice_is_not_followed_for_ever() {
          </nodegraph><standard_surface name=\"s\" type=\"surfaceshader\"><input name=\"base_color\" type=\"color3\" \
          nodegraph=\"g\" output=\"out\"/></standard_surface></materialx>"
     );
-    place.write("m.mtlx", text.as_bytes());
+    place.write("m.mtlx", text);
     let said = done(&place, "convert m.mtlx out.json");
     assert!(said.contains("more than 65536 steps"), "{said}");
 }
@@ -216,7 +212,7 @@ fn with_pictures(names: &[String]) -> impl FnOnce(&mut Json) + '_ {
 
 /// The entries of the import's report.
 fn entries(place: &Workplace) -> Vec<Json> {
-    let report: Json = serde_json::from_str(&place.read("report.json")).unwrap();
+    let report: Json = place.json("report.json");
     report["entries"].as_array().unwrap().clone()
 }
 
@@ -289,7 +285,7 @@ fn archives_of_many_names_and_of_nothing_but_zeros_end_soon() {
     let place = Workplace::new();
     let inside = |names: &[String]| {
         write_square(&place, "m.gltf", with_pictures(names));
-        let model = ["m.gltf", "square.bin"].map(|name| (name.to_owned(), std::fs::read(place.path(name)).unwrap()));
+        let model = ["m.gltf", "square.bin"].map(|name| (name.to_owned(), place.bytes(name)));
         model.to_vec()
     };
     let names: Vec<String> = (0..5000).map(|i| format!("p{i}.png")).collect();

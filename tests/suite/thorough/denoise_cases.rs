@@ -15,7 +15,7 @@ use glossmith::{
     scene::ModelSource,
 };
 
-use super::renders::{render, set};
+use super::renders::{adjust, render};
 
 fn sphere_on_ground(assignments: &str) -> Document {
     let mut document = Document {
@@ -23,9 +23,9 @@ fn sphere_on_ground(assignments: &str) -> Document {
         ground: true,
         ..Document::default()
     };
-    (document.render.width, document.render.height) = (64, 64);
+    adjust(&mut document, "render.width=64 render.height=64");
     document.view.denoise = Denoise::High;
-    set(&mut document.materials[0], assignments);
+    adjust(&mut document, assignments);
     document
 }
 
@@ -42,9 +42,9 @@ fn mirrors_glass_and_blur_come_out_nearer_to_the_truth() {
     let mut denoiser = Denoiser::open().unwrap_or_else(|error| panic!("{error}"));
     for (name, mut document) in [("mirror", mirror), ("glass", glass), ("blurred", blurred)] {
         // Its own noise is taken out by its halves; what is left is 1 % of the error.
-        (document.render.samples, document.render.seed) = (256, 7);
+        adjust(&mut document, "render.samples=256 render.seed=7");
         let reference = Halves::of(&render(EngineChoice::Cpu, &document));
-        (document.render.samples, document.render.seed) = (8, 1);
+        adjust(&mut document, "render.samples=8 render.seed=1");
         let noisy = Noisy::of(&render(EngineChoice::Cpu, &document), None);
         let done = denoiser.denoise(&noisy, Denoise::High).unwrap();
         let [samples, clean] = [&noisy.image, &done.image].map(|image| reference.error_of(&image.luminance()).value);
@@ -95,7 +95,7 @@ fn what_stands_still_in_a_turntable_does_not_boil() {
 fn a_worker_that_is_dropped_does_not_wait_for_the_denoiser() {
     let _ = Library::get().unwrap_or_else(|error| panic!("{error}"));
     let mut document = sphere_on_ground("");
-    (document.render.width, document.render.height, document.render.samples) = (1024, 1024, 1);
+    adjust(&mut document, "render.width=1024 render.height=1024 render.samples=1");
     document.view.denoise = Denoise::High;
     let worker = Worker::spawn(EngineChoice::Cpu, || {}).unwrap();
     worker.submit(&document, Pace::Still);
@@ -127,6 +127,6 @@ fn holes_of_transparent_pictures_stay_holes() {
         assert!(alpha(0, 0) < 0.02 && alpha(63, 63) < 0.02, "{how:?}: nothing is there");
         let middle: f32 = (0..256).map(|i| alpha(24 + i % 16, 24 + i / 16)).sum::<f32>() / 256.0;
         // A ray passes two sides: 1 − 0.5², and 1 − (1 − 0.5)² of the pixels' samples see something.
-        assert!((middle - 0.75).abs() < 0.05, "{how:?}: {middle}");
+        near!(middle, 0.75, 0.05, "{how:?}");
     }
 }

@@ -6,7 +6,6 @@ use glossmith::{
     document::{CustomCurve, MaterialSettings},
     matching::lobe_of_material,
     optics::{curve::Curve, frame::frame_from_normal, lobe::raw_sample, vector::vec3},
-    store::save_material,
 };
 
 use crate::cli_support::Workplace;
@@ -24,7 +23,7 @@ fn the_function_in_c_draws_the_lobes_own_directions() {
             anisotropy: 0.6,
             ..MaterialSettings::default()
         };
-        save_material(&place.path("m.json"), &material).unwrap();
+        place.save_material("m.json", &material);
         place.done("convert m.json lobe.h --to c");
         let main = r#"#include <stdio.h>
 #include "lobe.h"
@@ -36,7 +35,7 @@ int main(void) {
     }
 }
 "#;
-        place.write("main.c", main.as_bytes());
+        place.write("main.c", main);
         let gcc = |arguments: &[&str]| {
             let output = Command::new("gcc")
                 .args(arguments)
@@ -58,7 +57,7 @@ int main(void) {
             let drawn = local(raw_sample(&model.shape(), &frame, wo, [x[0], x[1], x[2]]));
             let expected = [drawn[0], drawn[1], drawn[2].abs()];
             for (a, b) in expected.iter().zip(&x[3..]) {
-                assert!((a - b).abs() < 2e-5, "{}: {expected:?} and {line}", curve.name());
+                near!(a, b, 2e-5, "{}: {expected:?} and {line}", curve.name());
             }
         }
     }
@@ -75,7 +74,7 @@ fn the_functions_in_shaders_languages_are_valid() {
             rotation_deg: 20.0,
             ..MaterialSettings::default()
         };
-        save_material(&place.path("m.json"), &material).unwrap();
+        place.save_material("m.json", &material);
         place.done("convert m.json m.wgsl");
         let module = naga::front::wgsl::parse_str(&place.read("m.wgsl")).unwrap_or_else(|error| {
             panic!("{name}: {}", error.emit_to_string(&place.read("m.wgsl")));
@@ -108,7 +107,7 @@ fn the_functions_in_shaders_languages_are_valid() {
             let head = format!(
                 "#include <tgmath.h>\ntypedef struct {{ float x, y, z; }} vec3;\n{shim}#define max fmax\n#define min fmin\n#define abs fabs\n"
             );
-            place.write("shim.c", format!("{head}{text}").as_bytes());
+            place.write("shim.c", format!("{head}{text}"));
             let output = Command::new("gcc")
                 .args(["-std=c99", "-c", "shim.c"])
                 .current_dir(place.path(""))

@@ -6,7 +6,7 @@ use glossmith::{
     document::MaterialSettings,
     optics::lobe::Lobe,
     scene::texture::{TextureTarget, UserTexture},
-    store::{PRESETS, load_material, preset::command_line_name, save_material},
+    store::{PRESETS, preset::command_line_name, save_material},
 };
 
 use crate::cli_support::Workplace;
@@ -77,7 +77,7 @@ fn textured(place: &Workplace, format: &str, ending: &str) -> PathBuf {
         material.user_textures.set(target, Some(texture));
         material.textures[target] = true;
     }
-    save_material(&place.path("painted.json"), &material).unwrap();
+    place.save_material("painted.json", &material);
     std::fs::create_dir_all(place.path(format)).unwrap();
     let name = format!("{format}/painted.{ending}");
     place.done(&format!("convert painted.json {name} --to {format}"));
@@ -118,7 +118,7 @@ fn materialx_finds_its_documents_valid_and_makes_shaders_of_them() {
             rotation_deg: 25.0,
             ..MaterialSettings::default()
         };
-        save_material(&place.path("turned.json"), &turned).unwrap();
+        place.save_material("turned.json", &turned);
         place.done(&format!("convert turned.json {format}/turned.mtlx --to {format}"));
         files.push(place.path(&format!("{format}/turned.mtlx")));
         files.push(textured(&place, format, "mtlx"));
@@ -167,7 +167,7 @@ fn mitsuba_renders_what_we_render() {
     };
     let matt = MaterialSettings::diffuse("matt", [0.8, 0.4, 0.2]);
     textured(&place, "mitsuba", "xml");
-    let painted = load_material(&place.path("painted.json")).unwrap().value;
+    let painted = place.material("painted.json");
     for (name, material) in [("metal", &aluminium), ("matt", &matt), ("painted", &painted)] {
         save_material(&place.path(&format!("{name}.json")), material).unwrap();
         place.done(&format!("convert {name}.json {name}.xml"));

@@ -6,12 +6,11 @@ use std::time::Duration;
 use glossmith::{
     document::{Document, effect::EffectSwitches},
     job::film::Film,
-    optics::random::Sequence,
     render::{EngineChoice, Session},
     scene::environment::EnvironmentSource,
 };
 
-use super::{random_documents::random_document, support::Random};
+use super::{random_documents::random_document, renders::adjust, support::Random};
 
 fn film(session: &mut Session, document: &Document) -> Film {
     session.submit(document).expect("built-in scenes");
@@ -45,8 +44,7 @@ fn in_the_furnace(document: &Document) -> Document {
         ..Default::default()
     };
     document.render.firefly_clamp = None;
-    document.render.samples = 32;
-    document.render.sequence = Sequence::Independent;
+    adjust(&mut document, "render.samples=32 render.sequence=independent");
     document.materials[0].emission_strength = 0.0;
     document
 }
@@ -56,7 +54,7 @@ fn assert_documents_sound(engine: EngineChoice, count: usize) {
     let mut random = Random::new(2026);
     for number in 0..count {
         let mut document = random_document(&mut random);
-        (document.render.width, document.render.height) = (8, 8);
+        adjust(&mut document, "render.width=8 render.height=8");
         if engine == EngineChoice::Gpu {
             // The general kernel for all: a kernel for each document would have to be compiled.
             document.render.effects = EffectSwitches::all_on();
@@ -70,7 +68,7 @@ fn assert_documents_sound(engine: EngineChoice, count: usize) {
         let mean = pixels.iter().sum::<f64>() / count;
         let sigma = furnace.variance_of_mean().iter().sum::<f64>().sqrt() / count;
         assert!(
-            mean <= 1.0 + 5.0 * sigma + 5e-3,
+            mean <= 1.0 + 5.0 * sigma + 0.005,
             "{what}: {mean} ± {sigma} in the furnace"
         );
     }

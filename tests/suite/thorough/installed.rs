@@ -1,5 +1,6 @@
 //! `make install` and `make uninstall`: what lands where, and that nothing is left.
 
+use crate::cli_support::Workplace;
 use std::{path::Path, path::PathBuf, process::Command, process::Output};
 
 const ROOT: &str = crate::ROOT;
@@ -25,8 +26,8 @@ fn files(folder: &Path) -> Vec<PathBuf> {
 
 #[test]
 fn it_is_installed_for_the_user_and_taken_away_again() {
-    let home = tempfile::tempdir().expect("a temporary folder");
-    let prefix = home.path().join("with a space");
+    let home = Workplace::new();
+    let prefix = home.path("with a space");
     let output = script(&prefix, crate::program(), &[]);
     assert!(output.status.success(), "{output:?}");
     let program = prefix.join("bin/glossmith");
@@ -83,20 +84,20 @@ fn it_is_installed_for_the_user_and_taken_away_again() {
 /// and that what is renamed is what is installed.
 #[test]
 fn a_flatpak_has_all_that_it_is_built_from_without_a_network() {
-    let home = tempfile::tempdir().expect("a temporary folder");
-    let index = home.path().join("registry/index/some");
+    let home = Workplace::new();
+    let index = home.path("registry/index/some");
     std::fs::create_dir_all(&index).expect("a folder");
     let config = r#"{"dl": "https://crates.example/{prefix}/{crate}/{version}"}"#;
     std::fs::write(index.join("config.json"), config).expect("a file");
     let output = Command::new("python3")
         .arg(Path::new(ROOT).join("scripts/flatpak"))
         .arg("--output")
-        .arg(home.path())
-        .env("CARGO_HOME", home.path())
+        .arg(home.root())
+        .env("CARGO_HOME", home.root())
         .output()
         .expect("python3");
     assert!(output.status.success(), "{output:?}");
-    let text = std::fs::read_to_string(home.path().join("io.github.glossmith.Glossmith.json")).expect("a manifest");
+    let text = std::fs::read_to_string(home.path("io.github.glossmith.Glossmith.json")).expect("a manifest");
     let manifest: serde_json::Value = serde_json::from_str(&text).expect("JSON");
     let sources = manifest["modules"][0]["sources"].as_array().expect("sources");
     let lock = std::fs::read_to_string(Path::new(ROOT).join("Cargo.lock")).expect("the lock file");
@@ -121,7 +122,7 @@ fn a_flatpak_has_all_that_it_is_built_from_without_a_network() {
             .as_str()
             .is_some_and(|text| text.contains("replace-with = \"vendored\""))
     );
-    let prefix = home.path().join("installed");
+    let prefix = home.path("installed");
     assert!(script(&prefix, crate::program(), &[]).status.success());
     for kind in ["desktop-file", "mime-file", "icon", "appdata-file"] {
         let renamed = manifest[format!("rename-{kind}")].as_str().expect("a name");
@@ -133,13 +134,13 @@ fn a_flatpak_has_all_that_it_is_built_from_without_a_network() {
 
 #[test]
 fn without_a_program_it_says_what_to_build() {
-    let home = tempfile::tempdir().expect("a temporary folder");
-    let output = script(home.path(), "not/there", &[]);
+    let home = Workplace::new();
+    let output = script(home.root(), "not/there", &[]);
     assert_eq!(output.status.code(), Some(1));
     let told = String::from_utf8_lossy(&output.stderr);
     assert!(
         told.contains("not/there") && told.contains("cargo build --release"),
         "{told}"
     );
-    assert!(files(home.path()).is_empty());
+    assert!(files(home.root()).is_empty());
 }

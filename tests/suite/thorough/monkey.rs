@@ -27,7 +27,6 @@ use super::{
     random_documents::random_document,
     support::Random,
     ui::{Editor, assert_same_controls, controls},
-    ui_hands::Hands as _,
     ui_panels::write_textured_square,
 };
 
@@ -163,7 +162,7 @@ impl Monkey {
             _ => {}
         }
         let monkey = Self {
-            harness,
+            harness: Editor(harness),
             trail: Trail {
                 seed,
                 deeds: VecDeque::new(),

@@ -50,20 +50,20 @@ const PATHS: [&str; 2] = ["Path", "Turntable output"];
 const ENDLESS: [&str; 1] = ["Check this machine"];
 
 /// What the monkey knows beside the window.
-pub(super) struct Surroundings {
+pub struct Surroundings {
     /// Where files may be written.
-    pub(super) folder: PathBuf,
+    pub folder: PathBuf,
     /// What it opens.
-    pub(super) files: Vec<PathBuf>,
+    pub files: Vec<PathBuf>,
     /// What there was before the deed before: what is new then is looked at first.
-    pub(super) before: HashSet<(Role, String)>,
+    pub before: HashSet<(Role, String)>,
     /// What it has had its hands on.
-    pub(super) touched: HashSet<(Role, String)>,
+    pub touched: HashSet<(Role, String)>,
 }
 
 /// Something that can be clicked, dragged or typed into.
 #[derive(Clone, Debug)]
-pub(super) struct Control {
+pub struct Control {
     role: Role,
     name: String,
     id: NodeId,
@@ -73,7 +73,7 @@ pub(super) struct Control {
 
 /// What is done.
 #[derive(Clone, Debug)]
-pub(super) enum Deed {
+pub enum Deed {
     Click(Control, PointerButton, usize),
     /// As a screen reader does, wherever the control is.
     Choose(Control),
@@ -136,7 +136,7 @@ fn of_role(controls: &[Control], random: &mut Random, role: Role) -> Option<Cont
 }
 
 impl Deed {
-    pub(super) fn random(random: &mut Random, harness: &Editor, around: &mut Surroundings) -> Self {
+    pub fn random(random: &mut Random, harness: &Editor, around: &mut Surroundings) -> Self {
         let mut all = found(harness);
         all.retain(|control| !ENDLESS.contains(&&*control.name));
         let key = |control: &Control| (control.role, control.name.clone());
@@ -249,7 +249,7 @@ impl Deed {
         }
     }
 
-    pub(super) fn perform(&self, harness: &mut Editor) {
+    pub fn perform(&self, harness: &mut Editor) {
         match self {
             Self::Click(control, button, times) => click(harness, control.place.center(), *button, *times),
             Self::Choose(control) => ask(harness, control, accesskit::Action::Click, None),

@@ -16,8 +16,7 @@ use glossmith::{
 
 use super::{
     docs::root,
-    ui::{Editor, request, see, see_label, settle, wait, window_of},
-    ui_hands::{Hands as _, press, type_path},
+    ui::{Editor, window_of},
     ui_study::race_strategies,
 };
 
@@ -59,44 +58,44 @@ fn worked_in(folder: &Path, size: [u32; 2]) -> Editor {
     let mut harness = window_of(document, folder, size);
     harness.command(Command::Pin);
     rest(&mut harness, 1.0);
-    request(&mut harness, Action::LookFrom(60.0, 15.0));
-    settle(&mut harness);
+    harness.request(Action::LookFrom(60.0, 15.0));
+    harness.settle();
     harness.command(Command::Pin);
     rest(&mut harness, 1.0);
     harness.command(Command::Undo);
-    settle(&mut harness);
+    harness.settle();
     let oak = folder.join("oak_rough.png");
     image::RgbImage::from_fn(64, 64, |x, y| image::Rgb([120 + ((x / 4 + y / 16) % 8 * 12) as u8; 3]))
         .save(&oak)
         .expect("a picture");
-    request(&mut harness, Action::ChooseTexture(TextureTarget::Roughness));
-    type_path(&mut harness, &oak, "Open");
-    settle(&mut harness);
+    harness.request(Action::ChooseTexture(TextureTarget::Roughness));
+    harness.type_path(&oak, "Open");
+    harness.settle();
     race_strategies(&mut harness, 0.5);
-    see_label(&mut harness, "Run the race");
+    harness.see_label("Run the race");
     harness.command(Command::Measure);
-    see(&mut harness, "the ledger", |harness| {
+    harness.see("the ledger", |harness| {
         harness
             .query_by_label_contains("ms for one sample of every pixel")
             .is_some()
     });
-    request(&mut harness, Action::Reveal(Pane::Check));
+    harness.request(Action::Reveal(Pane::Check));
     harness.run_steps(2);
-    press(&mut harness, "Check this machine");
-    see(&mut harness, "the checks", |harness| {
+    harness.press("Check this machine");
+    harness.see("the checks", |harness| {
         harness.query_by_label_contains("checks passed").is_some()
     });
     harness.command(Command::QueuePicture);
-    type_path(&mut harness, &folder.join("teapot.exr"), "Save");
+    harness.type_path(&folder.join("teapot.exr"), "Save");
     harness.command(Command::Turntable);
     harness.run_steps(3);
-    press(&mut harness, "Add to the queue");
+    harness.press("Add to the queue");
     harness.click(Role::CheckBox, "Pause the queue");
     let viewport = harness.get_by_label("Viewport").rect();
     harness.hover_at(viewport.center() + Vec2::new(-0.04 * viewport.width(), 0.0));
     harness.run_steps(3);
     harness.command(Command::Inspect);
-    settle(&mut harness);
+    harness.settle();
     harness
 }
 
@@ -122,11 +121,11 @@ fn panels() {
     let mut harness = worked_in(folder, SIZES[0]);
     for size in SIZES {
         harness.set_size(size.map(|side| side as f32).into());
-        settle(&mut harness);
+        harness.settle();
         for theme in THEMES {
             for (page, panes) in PAGES {
                 for pane in panes {
-                    request(&mut harness, Action::Reveal(*pane));
+                    harness.request(Action::Reveal(*pane));
                 }
                 harness.hover_at(egui::pos2(-10.0, -10.0));
                 rest(&mut harness, 3.0);
@@ -161,9 +160,9 @@ fn clean(mut document: Document) -> Document {
 
 fn reveal(harness: &mut Editor, panes: &[Pane]) {
     for pane in panes {
-        request(harness, Action::Reveal(*pane));
+        harness.request(Action::Reveal(*pane));
     }
-    settle(harness);
+    harness.settle();
     // Thumbnails and plots come after the render.
     rest(harness, 3.0);
 }
@@ -191,7 +190,7 @@ fn windows() {
     let _ = std::fs::remove_dir_all(folder);
     std::fs::create_dir_all(folder).expect("a folder");
     let mut harness = window_of(clean((EXAMPLES[0].document)()), folder, WINDOW);
-    request(&mut harness, Action::ChangeWorkspaces(Change::Use(LOOK.to_owned())));
+    harness.request(Action::ChangeWorkspaces(Change::Use(LOOK.to_owned())));
     reveal(&mut harness, &[]);
     take(&mut harness, "window");
     drop(harness);
@@ -201,7 +200,7 @@ fn windows() {
     take(&mut harness, "window-light");
     harness.command(Command::ToggleTheme);
     harness.command(Command::Measure);
-    see(&mut harness, "the ledger", |harness| {
+    harness.see("the ledger", |harness| {
         harness
             .query_by_label_contains("ms for one sample of every pixel")
             .is_some()
@@ -209,13 +208,13 @@ fn windows() {
     reveal(&mut harness, &[Pane::Effects, Pane::Curve]);
     take(&mut harness, "window-effects");
     harness.command(Command::Compare);
-    wait(&mut harness, "B", |app| app.rms_difference().is_some());
+    harness.wait("B", |app| app.rms_difference().is_some());
     reveal(&mut harness, &[Pane::Lobe, Pane::Lighting]);
     take(&mut harness, "window-compare");
     harness.command(Command::Compare);
-    settle(&mut harness);
+    harness.settle();
     harness.command(Command::Export);
-    type_path(&mut harness, &folder.join("car-paint.mtlx"), "Save");
-    see_label(&mut harness, "Write the file");
+    harness.type_path(&folder.join("car-paint.mtlx"), "Save");
+    harness.see_label("Write the file");
     take(&mut harness, "window-export");
 }

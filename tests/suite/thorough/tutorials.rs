@@ -74,7 +74,7 @@ fn automate_it() {
     // As the window saves it.
     let mut scene = super::worker::small_document();
     scene.view.denoise = Denoise::Fast;
-    glossmith::store::save_document(&place.path("scene.json"), &scene).unwrap();
+    place.save_document("scene.json", &scene);
     place.write(
         "scene.toml",
         b"materials = [\"gold\", \"chrome\"]\n[common]\nsize = \"16x16\"\nsamples = 2\nengine = \"cpu\"\n",
@@ -119,7 +119,7 @@ fn automate_it() {
         assert!(batch.contains(own), "{own} in {batch}");
         batch = batch.replace(own, instead);
     }
-    place.write("page.toml", batch.as_bytes());
+    place.write("page.toml", batch);
     let run = place.done("batch page.toml --pictures 1-1");
     assert!(run.stdout.contains("rendered"), "{}", run.stdout);
 }

@@ -89,7 +89,7 @@ fn f_number(ui: &mut Ui, desk: &mut Desk, focal_mm: f64) {
         if (f64::MIN_POSITIVE..1.0).contains(&blur) {
             let text = format!(
                 "Nothing blurs: the model is {:.2} m across. Choose a smaller f-number, or a smaller unit in Light › Scene unit.",
-                2e-3 * mm_per_radius
+                0.002 * mm_per_radius
             );
             widgets::note(ui, text);
         }

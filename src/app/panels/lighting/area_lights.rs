@@ -248,7 +248,7 @@ fn power(ui: &mut Ui, desk: &mut Desk, title: &str, light: &mut AreaLight) {
     let of_strength = |strength: f32| AreaLight { strength, ..*light };
     let is_black = of_strength(1.0).power(radius_m) <= 0.0;
     let default = of_strength(AreaLight::default().strength);
-    let speed = (0.01 * light.power(radius_m)).max(1e-3);
+    let speed = (0.01 * light.power(radius_m)).max(0.001);
     let style = NumberStyle::plain(0.0..=f64::MAX, unit, speed, 2);
     ui.add_enabled_ui(!is_black, |ui| {
         row(

@@ -12,7 +12,7 @@ use crate::{
 /// Powers of ten that a logarithmic polar plot shows, at least.
 const POLAR_POWERS: f64 = 4.0;
 /// Values at which a polar plot may be cut off.
-const CUTS: [f64; 2] = [1e-3, 1e9];
+const CUTS: [f64; 2] = [0.001, 1e9];
 
 /// Where a value lies on an axis.
 fn place(axis: &Axis, value: f64) -> f64 {

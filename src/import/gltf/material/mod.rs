@@ -31,7 +31,7 @@ const IOR_MAX: f32 = 4.0;
 
 /// Texture coordinates used by a slot's textures.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct UvUse {
+pub struct UvUse {
     /// Indices of the first set, and of the second if used.
     pub sets: [Option<u32>; 2],
     /// Transform of the normal texture, which tangents follow.
@@ -84,7 +84,7 @@ const SPECULAR_COLOR: &str = "a specular colour texture, by its mean";
 const SPECULAR_GLOSSINESS: &str = "/extensions/KHR_materials_pbrSpecularGlossiness";
 
 /// The materials that primitives have asked for so far.
-pub(super) struct Materials<'a> {
+pub struct Materials<'a> {
     document: &'a Document,
     /// The variant that is shown (KHR_materials_variants).
     variant: Option<u64>,
@@ -399,7 +399,7 @@ impl<'a> Materials<'a> {
             let thinnest_nm = film["iridescenceThicknessMinimum"]
                 .as_f64()
                 .map_or(100.0, |nm| (nm as f32).min(1e9));
-            read.thinnest = 1e-3 * thinnest_nm.max(0.0) / thickness;
+            read.thinnest = 0.001 * thinnest_nm.max(0.0) / thickness;
         }
         if let (Some(sheen), None) = (extension("sheen"), extension("fuzz")) {
             self.read_sheen(sheen, read, uvs);

@@ -15,7 +15,7 @@ use crate::{
 
 /// An image used by slots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum PictureKey {
+pub enum PictureKey {
     /// An image of the file.
     Image(usize),
     /// The number of what is [`Made`], and the part of it.
@@ -23,16 +23,16 @@ pub(super) enum PictureKey {
 }
 
 /// Makes textures of others, as far as these are there.
-pub(super) type Make = Box<dyn Fn([Option<&Texture>; 2]) -> Vec<Option<Texture>> + Sync>;
+pub type Make = Box<dyn Fn([Option<&Texture>; 2]) -> Vec<Option<Texture>> + Sync>;
 
 /// Textures that are made of images, the first of them a colour.
-pub(super) struct Made {
+pub struct Made {
     pub images: [Option<usize>; 2],
     pub make: Make,
 }
 
 /// A material's reference to a texture.
-pub(super) struct Reference {
+pub struct Reference {
     pub texture: usize,
     set: u32,
     texture_from_mesh_uv: [f32; 6],
@@ -55,7 +55,7 @@ impl Reference {
 
 impl Materials<'_> {
     /// Decodes images up to the size limit, within the import's budget. Failures are reported.
-    pub(super) fn decode(&mut self, images: Vec<usize>) -> HashMap<usize, Texture> {
+    pub fn decode(&mut self, images: Vec<usize>) -> HashMap<usize, Texture> {
         let (document, count) = (self.document, images.len());
         let Import { budget, loading, .. } = &document.files.import;
         let mut decoded = HashMap::new();
@@ -93,11 +93,7 @@ impl Materials<'_> {
         };
         let results: Vec<_> = parallel::map_into(pictures, decode);
         for (image, result) in results {
-            let kept = result.and_then(|scaled| {
-                let taken = budget.take(scaled.texture.bytes() as u64);
-                taken.map_err(|over| over.to_string()).map(|()| scaled)
-            });
-            match kept {
+            match result.and_then(|scaled| scaled.within(budget)) {
                 Ok(scaled) => {
                     scaled.report(&mut self.report);
                     decoded.insert(image, scaled.texture);
@@ -126,7 +122,7 @@ impl Materials<'_> {
     }
 
     /// The image of a texture.
-    pub(super) fn image(&mut self, texture: usize) -> Option<usize> {
+    pub fn image(&mut self, texture: usize) -> Option<usize> {
         let found = self.document.root.textures.get(texture);
         let found = found.and_then(|texture| self.document.image_of(texture));
         if found.is_none() {
@@ -137,7 +133,7 @@ impl Materials<'_> {
     }
 
     /// A reference to a texture's image; `None` if the texture is missing.
-    pub(super) fn texture(&mut self, reference: &Reference, uvs: &mut Uvs, owner: &str) -> Option<TextureRef> {
+    pub fn texture(&mut self, reference: &Reference, uvs: &mut Uvs, owner: &str) -> Option<TextureRef> {
         let set = reference.set;
         let Some(uv_set) = uvs.iter().position(|known| known.is_none_or(|known| known == set)) else {
             let what = format!("a texture on TEXCOORD_{set}: its material looks up two other sets already");
@@ -190,7 +186,7 @@ fn encoded(document: &Document, index: usize) -> Result<Encoded<'_>, String> {
 }
 
 /// The existing textures, with the slots' references to them; missing ones become plain grey.
-pub(super) fn without_missing(slots: &mut [Slot], textures: Vec<Option<Texture>>) -> Vec<Texture> {
+pub fn without_missing(slots: &mut [Slot], textures: Vec<Option<Texture>>) -> Vec<Texture> {
     let mut place = 0;
     let places: Vec<Option<usize>> = textures
         .iter()
@@ -235,7 +231,7 @@ fn wrap(mode: u32) -> Wrap {
 }
 
 /// Offset · rotation · scale, as KHR_texture_transform defines them.
-pub(super) fn affine(transform: &Json) -> [f32; 6] {
+pub fn affine(transform: &Json) -> [f32; 6] {
     let pair = |key: &str, default: f32| [0, 1].map(|i| number(&transform[key][i]).unwrap_or(default));
     let (sin, cos) = number(&transform["rotation"]).unwrap_or(0.0).sin_cos();
     let ([scale_u, scale_v], [offset_u, offset_v]) = (pair("scale", 1.0), pair("offset", 0.0));

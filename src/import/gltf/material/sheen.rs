@@ -7,7 +7,7 @@ use crate::{
 
 /// The weight, in all channels, and the colour of the fuzz that a texture of a sheen's colour gives, whose factor has this
 /// tint, at most 1.
-pub(super) fn weight_and_color(sheen: &Texture, tint: [f32; 3]) -> [Texture; 2] {
+pub fn weight_and_color(sheen: &Texture, tint: [f32; 3]) -> [Texture; 2] {
     let of_fuzz = |[r, g, b, _]: [u8; 4]| {
         let codes = [r, g, b].map(|code| f64::from(code) / 255.0);
         let linear = linear_from_srgb(Vec3::<f64>::from_f64(codes)).to_f64();
@@ -26,7 +26,7 @@ pub(super) fn weight_and_color(sheen: &Texture, tint: [f32; 3]) -> [Texture; 2] 
 }
 
 /// The alpha that multiplies the fuzz's roughness, which is that of the sheen's factor, by the alpha of the sheen's.
-pub(super) fn roughness(sheen: &Texture, factor: f32) -> Texture {
+pub fn roughness(sheen: &Texture, factor: f32) -> Texture {
     let of_fuzz = |root: f32| fuzz_of_sheen([1.0; 3], root).2;
     changed(sheen, "roughness of the fuzz", |[r, g, b, a]| {
         let share = of_fuzz(factor * f32::from(a) / 255.0) / of_fuzz(factor);

@@ -130,7 +130,7 @@ pub const GLTF_PARAMETERS: &[FileParameter] = file_parameters! {
 };
 
 /// Whether the part of a material in which a parameter stands is there, and is read: the draft of a coat goes before a clearcoat.
-pub(super) fn is_read(row: &FileParameter, material: &Json) -> bool {
+pub fn is_read(row: &FileParameter, material: &Json) -> bool {
     let (part, _) = row.place.rsplit_once('/').unwrap_or_default();
     let is_replaced = part.ends_with("clearcoat") && material.pointer("/extensions/KHR_materials_coat").is_some();
     material.pointer(part).is_some() && !is_replaced
@@ -146,7 +146,7 @@ pub fn kept_keys() -> impl Iterator<Item = &'static str> {
 }
 
 /// Keeps the parameters of the extensions that are not shown, where they have a weight.
-pub(super) fn keep(material: &Json, read: &mut Slot, report: &mut ImportReport) {
+pub fn keep(material: &Json, read: &mut Slot, report: &mut ImportReport) {
     for (extension, weight) in [
         ("dispersion", "dispersion"),
         ("diffuse_transmission", "diffuseTransmissionFactor"),
@@ -173,7 +173,7 @@ pub(super) fn keep(material: &Json, read: &mut Slot, report: &mut ImportReport) 
 
 /// Reports a material's parameters that the table ignores or does not have. Extensions that the file `declares` are reported
 /// with the file.
-pub(super) fn report_unread(material: &Json, declared: &[String], name: &str, report: &mut ImportReport) {
+pub fn report_unread(material: &Json, declared: &[String], name: &str, report: &mut ImportReport) {
     let members = |value: &Json| value.as_object().cloned().unwrap_or_default();
     let mut left = vec![(String::new(), members(material))];
     while let Some((place, all)) = left.pop() {

@@ -1,8 +1,10 @@
 //! Texels of whole numbers whose channels are some of their bits each.
 
+use crate::files::u32_at;
+
 /// The bits of a texel's bytes that are each channel.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Masks {
+pub struct Masks {
     /// Bytes a texel, at most 4.
     pub bytes: usize,
     /// Bit masks of red, green, blue and opacity; 0 for a missing channel.
@@ -21,7 +23,7 @@ const GREY: u32 = 0x2_0000;
 impl Masks {
     /// Masks of a DDS file that states them.
     pub fn of_dds(bytes: &[u8]) -> Option<Self> {
-        let number = |at: usize| Some(u32::from_le_bytes(bytes.get(at..at + 4)?.try_into().ok()?));
+        let number = |at| u32_at(bytes, at);
         let (flags, bits) = (number(80)?, number(88)?);
         let [red, green, blue, opacity] = [number(92)?, number(96)?, number(100)?, number(104)?];
         let has = |flag: u32| flags & flag != 0;

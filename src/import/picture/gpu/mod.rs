@@ -12,6 +12,7 @@ use ruzstd::StreamingDecoder;
 
 use self::masks::Masks;
 use super::{Refusal, basis, codes, light, mapped};
+use crate::files::u32_at;
 
 /// The first bytes of a KTX2 file.
 const KTX2: [u8; 12] = *b"\xabKTX 20\xbb\r\n\x1a\n";
@@ -163,13 +164,13 @@ fn of_dds(dds: &Dds) -> Option<Layout> {
 }
 
 /// Whether bytes start like such a container.
-pub(crate) fn is_container(bytes: &[u8]) -> bool {
+pub fn is_container(bytes: &[u8]) -> bool {
     bytes.starts_with(&KTX2) || bytes.starts_with(&DDS)
 }
 
 /// The image, or the six faces of the cube (+X, −X, +Y, −Y, +Z, −Z), at the largest level within `side_max` (of an image, of
 /// a face), or the smallest level.
-pub(super) fn decode(bytes: &[u8], side_max: [u32; 2]) -> Result<Vec<DynamicImage>, Refusal> {
+pub fn decode(bytes: &[u8], side_max: [u32; 2]) -> Result<Vec<DynamicImage>, Refusal> {
     if bytes.starts_with(&DDS) {
         return decode_dds(bytes, side_max);
     }
@@ -198,7 +199,7 @@ struct Ktx2<'a> {
 
 impl<'a> Ktx2<'a> {
     fn read(bytes: &'a [u8]) -> Option<Self> {
-        let number = |at: usize| Some(u32::from_le_bytes(bytes.get(at..at + 4)?.try_into().ok()?));
+        let number = |at| u32_at(bytes, at);
         Some(Self {
             bytes,
             format: number(12)?,
@@ -234,7 +235,7 @@ impl<'a> Ktx2<'a> {
 
     /// The value of a key, which is a text (KTX 2.0, "Key/Value Data").
     fn value(&self, key: &str) -> &'a [u8] {
-        let number = |at: usize| Some(u32::from_le_bytes(self.bytes.get(at..at + 4)?.try_into().ok()?) as usize);
+        let number = |at| u32_at(self.bytes, at).map(|x| x as usize);
         let found = || {
             let values = self.bytes.get(number(56)?..)?.get(..number(60)?)?;
             let (key, mut places) = (format!("{key}\0"), values.windows(key.len() + 1));

@@ -54,7 +54,7 @@ pub fn texture_info(index: usize, place: &TextureRef) -> Json {
 
 /// A material; `radius` is what lengths inside are counted in.
 pub fn material_json(material: &MaterialSettings, surface: &Surface, textures: &SlotTextures, radius: f64) -> Json {
-    let mean = textures.roughness_mean.unwrap_or(1.0).max(1e-3);
+    let mean = textures.roughness_mean.unwrap_or(1.0).max(0.001);
     let is_refracting = surface.transmission_weight * (1.0 - surface.metalness) > 0.0;
     let shown = numbers_of_format(material, surface, mean, radius);
     let [r, g, b] = shown.base_color;

@@ -219,7 +219,7 @@ fn is_near(wanted: &Json, found: &Json) -> bool {
         }
         (Json::Number(wanted), Json::Number(found)) => {
             let [a, b] = [wanted, found].map(|number| number.as_f64().unwrap_or(f64::NAN));
-            (a - b).abs() <= 1e-4 * (1.0 + a.abs())
+            (a - b).abs() <= 0.0001 * (1.0 + a.abs())
         }
         _ => wanted == found,
     }

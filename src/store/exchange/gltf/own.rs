@@ -113,7 +113,7 @@ fn picture(
         return Err("the format does not turn normals with their texture".to_owned());
     }
     let [a, b, _, c, d, _] = texture.picture_from_uv();
-    if (a * b + c * d).abs() > 1e-4 * (a * a + b * b + c * c + d * d) {
+    if (a * b + c * d).abs() > 0.0001 * (a * a + b * b + c * c + d * d) {
         return Err("the format stretches a texture before it turns it, not after".to_owned());
     }
     if target == TextureTarget::CoatColor {

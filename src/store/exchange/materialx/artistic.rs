@@ -20,7 +20,7 @@ fn tint_of_channel(head_on: f64, edge: f64) -> f64 {
 }
 
 /// The tint of a metal's edge by the colour that Standard Surface has for it.
-pub(super) fn edge_tint(head_on: [f32; 3], edge_color: [f32; 3]) -> [f32; 3] {
+pub fn edge_tint(head_on: [f32; 3], edge_color: [f32; 3]) -> [f32; 3] {
     std::array::from_fn(|i| {
         let tint = tint_of_channel(f64::from(head_on[i]), f64::from(edge_color[i]).clamp(0.0, 1.0));
         tint.clamp(0.0, 1.0) as f32
@@ -28,7 +28,7 @@ pub(super) fn edge_tint(head_on: [f32; 3], edge_color: [f32; 3]) -> [f32; 3] {
 }
 
 /// The colour for the edge that gives a tint, or the one that comes nearest: the tint grows with it.
-pub(super) fn edge_color(head_on: [f32; 3], tint: [f32; 3]) -> [f32; 3] {
+pub fn edge_color(head_on: [f32; 3], tint: [f32; 3]) -> [f32; 3] {
     std::array::from_fn(|i| {
         let (mut low, mut high) = (0.0, 1.0);
         for _ in 0..STEPS {

@@ -20,21 +20,21 @@ const LUMINANCE: [f32; 3] = [0.2722287, 0.6740818, 0.0536895];
 
 /// What an input is worth everywhere.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Worth {
+pub struct Worth {
     /// The value; one number stands in all four places.
-    pub(super) value: [f32; 4],
+    pub value: [f32; 4],
     /// The images of whose means it is made.
-    pub(super) pictures: Vec<PathBuf>,
+    pub pictures: Vec<PathBuf>,
     /// Something was computed of these means.
-    pub(super) is_computed: bool,
+    pub is_computed: bool,
     /// The image that it is, where it is one, what that is multiplied by and what is added then.
     texture: Option<UserTexture>,
     factor: [f32; 4],
     bias: [f32; 4],
     /// The unit that it is written in.
-    pub(super) unit: Option<String>,
+    pub unit: Option<String>,
     /// What of it was not understood.
-    pub(super) notes: Vec<String>,
+    pub notes: Vec<String>,
 }
 
 impl Worth {
@@ -46,7 +46,7 @@ impl Worth {
         }
     }
 
-    pub(super) fn color(&self) -> [f32; 3] {
+    pub fn color(&self) -> [f32; 3] {
         let [r, g, b, _] = self.value;
         [r, g, b]
     }
@@ -72,7 +72,7 @@ impl Worth {
     }
 
     /// The texture that it is, and what that multiplies; none where more is added than its strength says.
-    pub(super) fn as_texture(&self) -> Option<(UserTexture, [f32; 3])> {
+    pub fn as_texture(&self) -> Option<(UserTexture, [f32; 3])> {
         let (texture, [scale, bias]) = (self.texture.clone()?, [self.factor, self.bias]);
         let inverted = (0..3).any(|i| scale[i] < 0.0);
         let factor = [0, 1, 2].map(|i| if inverted { bias[i] } else { scale[i] + bias[i] });
@@ -89,7 +89,7 @@ impl Worth {
     }
 
     /// The texture of normals that it is, and how steep; `is_packed` where they lie in [0, 1].
-    pub(super) fn as_normals(&self, is_packed: bool) -> Option<(UserTexture, f32)> {
+    pub fn as_normals(&self, is_packed: bool) -> Option<(UserTexture, f32)> {
         let (texture, [mut scale, mut bias]) = (self.texture.clone()?, [self.factor, self.bias]);
         if is_packed || bias == [0.0; 4] {
             (scale, bias) = (scale.map(|x| 2.0 * x), bias.map(|x| 2.0 * x - 1.0));
@@ -122,7 +122,7 @@ impl Worth {
 
 /// Why the value of an input is unknown.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Unknown {
+pub enum Unknown {
     /// A node of this kind computes it.
     Computed(String),
     /// Something is missing, or wrong.
@@ -136,7 +136,7 @@ impl Unknown {
 }
 
 /// The input of that name.
-pub(super) fn child<'a>(node: Node<'a, 'a>, name: &str) -> Option<Node<'a, 'a>> {
+pub fn child<'a>(node: Node<'a, 'a>, name: &str) -> Option<Node<'a, 'a>> {
     let is_meant = |child: &Node<'_, '_>| child.has_tag_name("input") && child.attribute("name") == Some(name);
     node.children().find(is_meant)
 }
@@ -174,13 +174,13 @@ fn definition<'a>(node: Node<'a, 'a>) -> Option<(Node<'a, 'a>, Node<'a, 'a>)> {
 }
 
 /// A material's surface, and where it is.
-pub(super) struct Shader<'a> {
-    pub(super) node: Node<'a, 'a>,
+pub struct Shader<'a> {
+    pub node: Node<'a, 'a>,
     /// The material as the document has it; none where the surface stands alone.
-    pub(super) material: Option<Node<'a, 'a>>,
+    pub material: Option<Node<'a, 'a>>,
     /// The `surfacematerial` that names the surface.
-    pub(super) maker: Option<Node<'a, 'a>>,
-    pub(super) within: Vec<Node<'a, 'a>>,
+    pub maker: Option<Node<'a, 'a>>,
+    pub within: Vec<Node<'a, 'a>>,
 }
 
 impl<'a> Shader<'a> {
@@ -219,7 +219,7 @@ impl<'a> Shader<'a> {
 }
 
 /// The surfaces of the materials; those that no material names where there is no material.
-pub(super) fn shaders<'a>(root: Node<'a, 'a>) -> Vec<Shader<'a>> {
+pub fn shaders<'a>(root: Node<'a, 'a>) -> Vec<Shader<'a>> {
     let is_defining = |outer: Node<'_, '_>| outer.has_tag_name("nodegraph") && outer.has_attribute("nodedef");
     let is_material = |node: &Node<'a, 'a>| {
         let is_own = node.attribute("type") == Some("material") && definition(*node).is_some();
@@ -244,8 +244,8 @@ pub(super) fn shaders<'a>(root: Node<'a, 'a>) -> Vec<Shader<'a>> {
 
 /// A node, and which of its outputs is taken, and which channels of that.
 #[derive(Clone, Copy)]
-pub(super) struct Source<'a> {
-    pub(super) node: Node<'a, 'a>,
+pub struct Source<'a> {
+    pub node: Node<'a, 'a>,
     output: Option<&'a str>,
     channels: Option<&'a str>,
 }
@@ -259,7 +259,7 @@ fn output_of<'a>(graph: Node<'a, 'a>, name: Option<&str>) -> Option<Node<'a, 'a>
 }
 
 /// What an input or an output of a graph is connected to. A graph goes before a node.
-pub(super) fn source_of<'a>(place: Node<'a, 'a>) -> Option<Source<'a>> {
+pub fn source_of<'a>(place: Node<'a, 'a>) -> Option<Source<'a>> {
     let beside = if place.has_tag_name("input") {
         place.parent()?
     } else {
@@ -312,11 +312,7 @@ fn of_interface<'a>(place: Node<'a, 'a>, within: Within<'_, 'a>) -> Option<(Node
 const OF_VALUES: [&str; 4] = ["nodegraph", "nodename", "interfacename", "value"];
 
 /// What an input is worth; nothing where it has no value of its own.
-pub(super) fn worth<'a>(
-    input: Node<'a, 'a>,
-    within: Within<'_, 'a>,
-    images: &Images<'_>,
-) -> Result<Option<Worth>, Unknown> {
+pub fn worth<'a>(input: Node<'a, 'a>, within: Within<'_, 'a>, images: &Images<'_>) -> Result<Option<Worth>, Unknown> {
     let steps = Cell::new(0);
     Graph { images, steps }.input(input, within, 0)
 }

@@ -8,7 +8,7 @@ use crate::{
 };
 
 /// Images that a document names: each is read once, within one budget.
-pub(super) struct Images<'p> {
+pub struct Images<'p> {
     /// Folder of the document.
     folder: &'p Path,
     /// Cancellation, and images that were refused.
@@ -19,7 +19,7 @@ pub(super) struct Images<'p> {
 
 impl<'p> Images<'p> {
     /// Images of a document in a folder, none read.
-    pub(super) fn in_folder(folder: &'p Path, loading: &'p Loading) -> Self {
+    pub fn in_folder(folder: &'p Path, loading: &'p Loading) -> Self {
         Self {
             folder,
             loading,
@@ -29,12 +29,12 @@ impl<'p> Images<'p> {
     }
 
     /// The file of an image by its name in the document.
-    pub(super) fn path(&self, file: &Path) -> PathBuf {
+    pub fn path(&self, file: &Path) -> PathBuf {
         self.folder.join(file).components().collect()
     }
 
     /// Mean of an image by its name in the document.
-    pub(super) fn mean(&self, file: &Path) -> Result<FileMean, String> {
+    pub fn mean(&self, file: &Path) -> Result<FileMean, String> {
         if let Some(known) = self.means.borrow().get(file) {
             return known.clone();
         }

@@ -18,7 +18,7 @@ const PREFIX: &str = "fileprefix";
 const COLORSPACE: &str = "colorspace";
 
 /// The text of a document, with that of those which it includes in their places. Their paths are seen from the file at `path`.
-pub(super) fn whole_text(path: &Path, text: String, loading: &Loading) -> Result<String, String> {
+pub fn whole_text(path: &Path, text: String, loading: &Loading) -> Result<String, String> {
     let mut files = vec![path.to_owned()];
     let text = expanded(path, text, &mut files, loading)?;
     // Included elements may have prefixes that their own document declared.

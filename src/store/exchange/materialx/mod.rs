@@ -15,7 +15,7 @@ mod units;
 use std::{collections::HashMap, path::Path};
 
 pub use self::surfaces::{SURFACES, SurfaceKind};
-pub(super) use self::{
+pub use self::{
     network::{Node, OPEN_PBR, PREVIEW_SURFACE, Worth},
     read::{read, read_document},
 };
@@ -29,7 +29,7 @@ use super::{
 };
 
 /// The attribute of a material that has the exact parameters.
-pub(super) const CARRIER: &str = carried::MARK;
+pub const CARRIER: &str = carried::MARK;
 const STANDARD: Takes = Takes {
     widths: standard_widths,
     lacks: [

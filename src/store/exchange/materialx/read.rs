@@ -41,7 +41,7 @@ pub fn read(path: &Path, options: ReadOptions) -> Result<Subject, ExchangeError>
 }
 
 /// The materials of a document whose images are seen from the file at `path`; `lost` is what the first lost on its way into that.
-pub(in crate::store::exchange) fn read_document(
+pub fn read_document(
     path: &Path,
     document: &Document<'_>,
     mut lost: Vec<Entry>,
@@ -163,7 +163,7 @@ fn is_near(a: &Surface, b: &Surface) -> bool {
 }
 
 fn are_near((a, b): (f32, f32)) -> bool {
-    (a - b).abs() <= 1e-4 * (1.0 + a.abs())
+    (a - b).abs() <= 0.0001 * (1.0 + a.abs())
 }
 
 fn read_surface(shader: &Shader<'_>, images: &Images<'_>) -> Result<(Surface, Vec<Entry>), String> {
@@ -312,7 +312,7 @@ fn normal_map<'a>(
 }
 
 /// What an input for normals bends.
-pub(super) fn normal_target(name: &str) -> Option<TextureTarget> {
+pub fn normal_target(name: &str) -> Option<TextureTarget> {
     Some(match name {
         "normal" | "geometry_normal" => TextureTarget::Normal,
         "coat_normal" | "geometry_coat_normal" | "clearcoat_normal" => TextureTarget::CoatNormal,
@@ -321,7 +321,7 @@ pub(super) fn normal_target(name: &str) -> Option<TextureTarget> {
 }
 
 /// What an image on an input varies here.
-pub(super) fn target_of(row: &FileParameter) -> Option<TextureTarget> {
+pub fn target_of(row: &FileParameter) -> Option<TextureTarget> {
     let target = TextureTarget::of_key(row.keys()[0], "").filter(|_| row.per == 1.0)?;
     // An opacity that holds in one mode alone is a number, as is what has another scale or is an opacity too.
     let is_number = target == TextureTarget::Opacity && !row.layer.is_empty();

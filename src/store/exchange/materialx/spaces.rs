@@ -49,14 +49,14 @@ const SPACES: &[(&str, Curve, Chromaticities)] = &[
 
 /// A colour space that is known.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Space {
+pub struct Space {
     curve: Curve,
     primaries: Chromaticities,
 }
 
 impl Space {
     /// Linear Rec. 709.
-    pub(super) fn working() -> Self {
+    pub fn working() -> Self {
         Self {
             curve: Curve::Linear,
             primaries: REC709,
@@ -64,7 +64,7 @@ impl Space {
     }
 
     /// The space of that name; linear Rec. 709 where there is none.
-    pub(super) fn named(name: &str) -> Option<Self> {
+    pub fn named(name: &str) -> Option<Self> {
         // The Color Interop Forum's names of the same spaces.
         let name = name.strip_suffix("_scene").unwrap_or(name);
         let is_it = |names: &str| names.split(' ').any(|other| other == name) || name.is_empty();
@@ -73,7 +73,7 @@ impl Space {
     }
 
     /// A colour in linear Rec. 709.
-    pub(super) fn rec709(&self, color: [f32; 3]) -> [f32; 3] {
+    pub fn rec709(&self, color: [f32; 3]) -> [f32; 3] {
         self.with_primaries(match self.curve {
             Curve::Linear => color,
             Curve::Srgb => linear_from_srgb(Vec3::<f32>::from_f32(color)).to_f32(),
@@ -82,7 +82,7 @@ impl Space {
     }
 
     /// The mean of an image in linear Rec. 709; of a gamma other than sRGB's that of the mean code.
-    pub(super) fn rec709_of_mean(&self, mean: &TextureMean) -> [f32; 3] {
+    pub fn rec709_of_mean(&self, mean: &TextureMean) -> [f32; 3] {
         match self.curve {
             Curve::Srgb => self.with_primaries(mean.linear),
             _ => self.rec709([mean.codes[0], mean.codes[1], mean.codes[2]]),
@@ -97,7 +97,7 @@ impl Space {
     }
 
     /// Whether images of it are read as they are by a texture of sRGB codes, or of plain numbers; none where neither does.
-    pub(super) fn is_srgb(&self) -> Option<bool> {
+    pub fn is_srgb(&self) -> Option<bool> {
         match self.curve {
             _ if self.primaries != REC709 => None,
             Curve::Linear => Some(false),

@@ -89,7 +89,7 @@ fn open_pbr(inputs: &mut Inputs, s: &mut Surface) {
 }
 
 /// The numbers that OpenPBR's inputs have for a surface.
-pub(super) fn as_open_pbr(surface: &Surface) -> Surface {
+pub fn as_open_pbr(surface: &Surface) -> Surface {
     let mut s = surface.clone();
     s.counter_coat();
     s.specular_color = s.tint();
@@ -119,7 +119,7 @@ fn standard_surface(inputs: &mut Inputs, s: &mut Surface) {
 }
 
 /// The numbers that Standard Surface's inputs have for a surface.
-pub(super) fn as_standard_surface(surface: &Surface) -> Surface {
+pub fn as_standard_surface(surface: &Surface) -> Surface {
     let (ratio, rotation_deg) = surface.ratio_and_rotation();
     let (emission_strength, emission_color) = surface.strength_and_color();
     Surface {
@@ -201,13 +201,13 @@ fn usd_preview_surface(inputs: &mut Inputs, s: &mut Surface) {
     } else {
         // The reflection head-on is a colour by itself: what the index has it is multiplied by.
         s.metalness = 0.0;
-        s.specular_color = weighted(s.specular_color, fresnel_f0(s.ior).max(1e-3).recip());
+        s.specular_color = weighted(s.specular_color, fresnel_f0(s.ior).max(0.001).recip());
     }
     s.emission_strength = 1.0;
 }
 
 /// The numbers that the inputs of a UsdPreviewSurface have for a surface.
-pub(super) fn as_preview_surface(surface: &Surface) -> Surface {
+pub fn as_preview_surface(surface: &Surface) -> Surface {
     Surface {
         emission_color: surface.emission(),
         // Refraction is thin there: what opacity does not stop is seen behind.
@@ -221,7 +221,7 @@ fn surface_unlit(_inputs: &mut Inputs, s: &mut Surface) {
 }
 
 /// The number or colour that an input has for a surface; none where it has none.
-pub(super) fn written(row: &FileParameter, shown: &Surface) -> Option<[f32; 3]> {
+pub fn written(row: &FileParameter, shown: &Surface) -> Option<[f32; 3]> {
     let parameter = parameter(row.keys()[0]).ok().filter(|_| !row.default.is_empty());
     Some(parameter?.rgb(shown)?.map(|x| x * row.per))
 }

@@ -58,7 +58,7 @@ pub const OPEN_PBR: &[FileParameter] = file_parameters! { "" {
     "geometry_coat_tangent" "graph" => nowhere COAT_ALONG;
 } };
 
-pub(super) const STANDARD_SURFACE: &[FileParameter] = file_parameters! { "" {
+pub const STANDARD_SURFACE: &[FileParameter] = file_parameters! { "" {
     "base" = "1" "0.5" => share "base.weight";
     "base_color" = "0.8, 0.8, 0.8" "0.5, 0.25, 0.125" => share "base.color";
     "diffuse_roughness" = "0" "0.25" => share "base.diffuse_roughness";
@@ -103,7 +103,7 @@ pub(super) const STANDARD_SURFACE: &[FileParameter] = file_parameters! { "" {
     "tangent" "graph" => to "specular.rotation": "the turn of a `rotate3d`";
 } };
 
-pub(super) const GLTF_PBR: &[FileParameter] = file_parameters! { "" {
+pub const GLTF_PBR: &[FileParameter] = file_parameters! { "" {
     "base_color" = "1, 1, 1" "0.5, 0.25, 0.125" => share "base.color";
     "metallic" = "1" "0.5" => share "base.metalness";
     "roughness" = "1" "0.5" => share "specular.roughness";
@@ -135,7 +135,7 @@ pub(super) const GLTF_PBR: &[FileParameter] = file_parameters! { "" {
     "dispersion" = "0" "0.5" => nowhere DISPERSION of "transmission";
 } };
 
-pub(super) const DISNEY_PRINCIPLED: &[FileParameter] = file_parameters! { "" {
+pub const DISNEY_PRINCIPLED: &[FileParameter] = file_parameters! { "" {
     "baseColor" = "0.16, 0.16, 0.16" "0.5, 0.25, 0.125" => share "base.color";
     "metallic" = "0" "0.5" => share "base.metalness";
     "roughness" = "0.5" "0.25" => share "specular.roughness";
@@ -152,7 +152,7 @@ pub(super) const DISNEY_PRINCIPLED: &[FileParameter] = file_parameters! { "" {
     "subsurfaceDistance" = "1, 1, 1" "0.5, 0.25, 0.125" => nowhere SUBSURFACE of "subsurface";
 } };
 
-pub(super) const SURFACE_UNLIT: &[FileParameter] = file_parameters! { "" {
+pub const SURFACE_UNLIT: &[FileParameter] = file_parameters! { "" {
     "emission" = "1" "0.5" => to "emission.strength" in 0.0..1e6;
     "emission_color" = "1, 1, 1" "0.5, 0.25, 0.125" => to "emission.color" in 0.0..1e6;
     "transmission" = "0" "0.5" => nowhere "what shines lets nothing through but by its opacity";

@@ -20,7 +20,7 @@ const UNITS: &[(&str, f64)] = &[
 ];
 
 /// What a value in a unit is multiplied by, to be in that of an input.
-pub(super) fn factor(unit: &str, row: &FileParameter) -> Option<f32> {
+pub fn factor(unit: &str, row: &FileParameter) -> Option<f32> {
     let (_, of_unit) = UNITS.iter().find(|(name, _)| *name == unit)?;
     // Films are in µm, other lengths in metres.
     let own = match row.keys()[0] {

@@ -13,13 +13,14 @@ use crate::{
         },
         text_of,
     },
+    named::joined,
     store::exchange::{carried, materialx::SurfaceKind, report::Entry, xml::escaped},
 };
 
 /// Outputs of a material that name its surface. The first that is known is read.
 const SURFACES: [&str; 2] = ["outputs:surface", "outputs:mtlx:surface"];
 
-pub(super) fn materials(stage: &Stage) -> Vec<Prim> {
+pub fn materials(stage: &Stage) -> Vec<Prim> {
     let mut found = Vec::new();
     let walked = stage.traverse(PrimPredicate::DEFAULT_PROXIES, |path| {
         found.push(stage.prim(path.clone()))
@@ -29,7 +30,7 @@ pub(super) fn materials(stage: &Stage) -> Vec<Prim> {
 }
 
 /// The exact parameters, where a material carries them.
-pub(super) fn exact(material: &Prim) -> Option<MaterialSettings> {
+pub fn exact(material: &Prim) -> Option<MaterialSettings> {
     let Value::Dictionary(data) = material.custom_data().ok()?? else {
         return None;
     };
@@ -49,34 +50,16 @@ fn node(shader: &Prim) -> (String, &'static str) {
         return (kind.to_owned(), "");
     };
     let parts: Vec<&str> = definition.split('_').collect();
-    let type_of = |part: &&str| TYPES.iter().find(|kind| part.starts_with(**kind));
+    let type_of = |part: &&str| TYPES.split(' ').find(|kind| part.starts_with(kind));
     let is_name = |part: &&&str| type_of(part).is_none() && part.parse::<u32>().is_err();
-    let named = parts.iter().take_while(is_name).copied().collect::<Vec<_>>().join("_");
+    let named = joined(parts.iter().take_while(is_name), "_");
     let kind = parts.iter().rev().find_map(type_of);
-    (named, kind.copied().unwrap_or_default())
+    (named, kind.unwrap_or_default())
 }
 
 /// Types by which names of MaterialX's definitions end.
-const TYPES: &[&str] = &[
-    "float",
-    "color3",
-    "color4",
-    "vector2",
-    "vector3",
-    "vector4",
-    "integer",
-    "boolean",
-    "string",
-    "filename",
-    "matrix33",
-    "matrix44",
-    "surfaceshader",
-    "displacementshader",
-    "volumeshader",
-    "material",
-    "BSDF",
-    "EDF",
-];
+const TYPES: &str = "float color3 color4 vector2 vector3 vector4 integer boolean string filename matrix33 matrix44 surfaceshader \
+                     displacementshader volumeshader material BSDF EDF";
 
 /// The shaders below a prim.
 fn shaders_below(prim: &Prim, found: &mut Vec<Prim>) {
@@ -89,7 +72,7 @@ fn shaders_below(prim: &Prim, found: &mut Vec<Prim>) {
 }
 
 /// A material as a document of MaterialX with the exact parameters, and what of it is not read; none if it has no surface.
-pub(super) fn document(material: &Prim, exact: Option<&MaterialSettings>) -> Option<(String, Vec<Entry>)> {
+pub fn document(material: &Prim, exact: Option<&MaterialSettings>) -> Option<(String, Vec<Entry>)> {
     let of_output = |output: &&str| match end(material.attribute(*output))? {
         End::Node(shader, _) => Some(shader),
         End::Value(_) => None,
@@ -169,13 +152,7 @@ fn value(attribute: &Attribute) -> Option<String> {
             let four = || value.clone().cast::<[f64; 4]>().map(Vec::from);
             let three = value.clone().cast::<[f64; 3]>().map(Vec::from);
             let found = three.or_else(|_| four()).or_else(|_| number()).ok()?;
-            Some(
-                found
-                    .iter()
-                    .map(|x| (*x as f32).to_string())
-                    .collect::<Vec<_>>()
-                    .join(", "),
-            )
+            Some(joined(found.into_iter().map(|x| x as f32), ", "))
         }
     };
     let plain = text_of(attribute).or_else(|| numbers(attribute.get::<Value>().ok()??))?;
