@@ -113,7 +113,8 @@ fn write(harness: &mut Editor, to: &Path) {
 #[test]
 #[ignore = "makes screenshots"]
 fn panels() {
-    // Its name is seen in the pictures.
+    // The name of the folder is seen in the pictures.
+    std::env::set_current_dir(root()).expect("it is there");
     let folder = Path::new("target/panels");
     let _ = std::fs::remove_dir_all(folder);
     std::fs::create_dir_all(folder).expect("a folder");
@@ -185,7 +186,8 @@ fn take(harness: &mut Editor, name: &str) {
 #[test]
 #[ignore = "makes screenshots"]
 fn windows() {
-    // Its name is seen in a screenshot.
+    // The name of the folder is seen in a screenshot.
+    std::env::set_current_dir(root()).expect("it is there");
     let folder = Path::new("target/windows");
     let _ = std::fs::remove_dir_all(folder);
     std::fs::create_dir_all(folder).expect("a folder");
