@@ -85,7 +85,7 @@ fn cameras_stand_where_they_are_put() {
     }
 }
 
-/// Rays that have passed 4096 sheets see what is behind all, and that is told; of hundreds each takes its share.
+/// Light beyond 4096 sheets along a ray is reported as cut; of hundreds of sheets each takes its share.
 #[test]
 fn sheets_beyond_the_last_that_a_ray_passes_are_told() {
     let place = Workplace::new();
@@ -113,11 +113,11 @@ fn samples_of_a_pixel_of_1e30_are_left_out_and_told() {
     let path = place.path("bright.hdr");
     write_hdr(&path, 16, 8, |x, y| [if (x, y) == (4, 2) { 1e30 } else { 0.5 }; 3]);
     let scene = "render --model sphere --environment bright.hdr --size 16x16 --samples 4 --engine cpu -o b.exr";
-    let said = place.done(&format!("{scene} --report b.json")).stderr;
+    let stderr = place.done(&format!("{scene} --report b.json")).stderr;
     let report: Value = place.json("b.json");
     let dropped = report["dropped_samples"].as_u64().unwrap();
-    let told = format!("{dropped} samples were left out: not finite, negative, or above 1e18");
-    assert!(dropped > 0 && said.contains(&told), "{told}: {said}");
+    let message = format!("{dropped} samples were left out: not finite, negative, or above 1e18");
+    assert!(dropped > 0 && stderr.contains(&message), "{message}: {stderr}");
 }
 
 #[test]

@@ -198,7 +198,7 @@ fn every_preset_comes_back_within_the_stated_loss_from_what_a_file_shows() {
 }
 
 #[test]
-fn what_is_lost_is_told_and_shown() {
+fn what_is_lost_is_reported_and_shown() {
     for (format, assignments, part, outcome) in [
         ("blender", "specular.anisotropy=0.5", "anisotropy", Outcome::Exact),
         (
@@ -218,17 +218,17 @@ fn what_is_lost_is_told_and_shown() {
         let subject = Subject::of(material(&format!(
             "specular.lobe=ggx specular.fresnel=dielectric {assignments}"
         )));
-        let told = prepare(&subject, "a", "a".as_ref(), by_name(format).unwrap())
+        let report = prepare(&subject, "a", "a".as_ref(), by_name(format).unwrap())
             .unwrap()
             .report;
-        let told = &told.materials[0];
-        let found = told.entries.iter().find(|entry| entry.what == part);
+        let report = &report.materials[0];
+        let found = report.entries.iter().find(|entry| entry.what == part);
         assert_eq!(
             found.map(|entry| entry.outcome),
             Some(outcome),
             "{assignments}: {found:?}"
         );
-        let [_, shown] = &**told.looks.as_ref().unwrap();
+        let [_, shown] = &**report.looks.as_ref().unwrap();
         assert_eq!(shown.film_weight, f32::from(part.contains("film")), "{assignments}");
     }
 }

@@ -344,7 +344,7 @@ fn singular_directions(question: &LobeQuestion) -> Vec<Vec3<f32>> {
         let across = around.tangent * cos + around.bitangent * sin;
         let level = frame.tangent * cos + frame.bitangent * sin;
         let at = |angle_rad: f64| middle * angle_rad.cos() + across * angle_rad.sin();
-        directions.extend([1e-7, 1e-6, 0.0001, 0.001].map(at));
+        directions.extend([1e-7, 1e-6, 1e-4, 1e-3].map(at));
         directions.extend([-1e-7, -1e-20, 0.0, 1e-20, 1e-7, 0.001].map(|height| level + normal * height));
         let (mut inside, mut outside) = (0.0, std::f64::consts::PI);
         for _ in 0..40 {
