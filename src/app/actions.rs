@@ -179,7 +179,7 @@ commands! {
     PreviewTurn, View, "Turntable preview", "Previews a turntable. Esc stops.", key(Key::T), 0;
     Pin, View, "Pin a snapshot", "Saves material, light and camera with a thumbnail, to come back to.", key(Key::P), 0;
     Maximise, View, "Viewport only", "Hides the panels, or shows them again.", key(Key::F11), 1;
-    ToggleTheme, View, "Light or dark", "Changes between the light and the dark theme.", None, 1;
+    ToggleTheme, View, "Switch theme", "Changes between the light and the dark theme.", None, 1;
     ResetLayout, View, "Reset layout", "Puts the panels of this workspace back to where they were at first.", None, 1;
     Pause, Render, "Pause / resume", "Stops rendering, or goes on with it.", key(Key::Space), 0;
     Restart, Render, "Restart render", "Restarts the render.", None, 0;

@@ -380,10 +380,6 @@ impl App {
                     self.edits.did(ENVIRONMENT_CHANGED);
                     self.count_as_start(is_start);
                 }
-                Event::LayersMade(path, layers, progress) => {
-                    self.write_layers(path, layers, &progress);
-                    continue;
-                }
                 Event::Reloaded(before, model) => {
                     self.adopt_reloaded(before, model);
                     continue;

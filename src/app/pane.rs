@@ -88,10 +88,3 @@ macro_rules! panes {
 }
 
 list!(panes);
-
-impl Pane {
-    /// What bringing it to the front is called.
-    pub fn command(self) -> String {
-        format!("Show {}", self.title().to_lowercase())
-    }
-}

@@ -187,7 +187,7 @@ fn snapshots_are_pinned_kept_brought_back_compared_and_deleted() {
 
     let mut harness = with_data();
     harness.settle();
-    harness.state_mut().reveal(Pane::Snapshots);
+    harness.reveal(Pane::Snapshots);
     harness.see("the snapshot", |harness| has_button(harness, "Zebra"));
     let before = harness.document().clone();
     harness.click(Role::Button, "Zebra");

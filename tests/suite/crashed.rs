@@ -3,13 +3,12 @@
 use std::{path::Path, path::PathBuf, process::Command, process::Stdio, time::Duration};
 
 use egui::accesskit::Role;
-use egui_kittest::kittest::Queryable as _;
 use glossmith::app::{Options, actions::Command as Choice, report_panics};
 
 use super::{
     cli_support::Workplace,
     nothing_lost::{edit, keeping_editor},
-    ui::{Editor, editor_of, options},
+    ui::{editor_of, options},
 };
 
 /// The data folder of the child.
@@ -69,10 +68,6 @@ fn crash(data: &Path, place: &str) {
     assert!(!status.success());
 }
 
-fn offers(harness: &Editor, message: &str) -> bool {
-    harness.query_by_label_contains(message).is_some()
-}
-
 #[test]
 fn a_panic_leaves_the_document_and_a_report_and_the_next_start_says_so() {
     for (place, message) in [
@@ -82,7 +77,7 @@ fn a_panic_leaves_the_document_and_a_report_and_the_next_start_says_so() {
         let folder = Workplace::new();
         crash(folder.root(), place);
         let mut harness = keeping_editor(folder.root());
-        harness.see("the offer", |harness| offers(harness, message));
+        harness.see("the offer", |harness| harness.tells(message));
         harness.check_accessibility();
         harness.click(Role::Button, "Restore untitled");
         assert_eq!(harness.material().roughness, LOST, "{place}");

@@ -84,8 +84,10 @@ fn what_a_crash_left_is_offered_and_restored() {
     let mut crashed = keeping_editor(folder.root());
     edit_until_kept(&mut crashed, folder.root(), 0.71);
     let document = crashed.state().document().clone();
-    drop(crashed);
     let mut harness = keeping_editor(folder.root());
+    harness.wait("the start", |app| app.snapshot().engine.is_some());
+    // A process that is killed holds its file for a while.
+    drop(crashed);
     harness.see("the offer", |harness| harness.has("Unsaved work was found"));
     harness.check_accessibility();
     assert_ne!(*harness.document(), document);

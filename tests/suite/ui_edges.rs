@@ -1,17 +1,11 @@
 //! Rough edges of the window: endings of saved projects, hard cases that stop.
 
-use egui_kittest::kittest::Queryable as _;
 use glossmith::app::{Options, actions::Command, layout::Pane};
 
 use super::{
     cli_support::Workplace,
-    ui::{Editor, editor, editor_of, options},
+    ui::{editor, editor_of, options},
 };
-
-/// Whether a text is shown anywhere.
-fn is_shown(harness: &Editor, part: &str) -> bool {
-    harness.query_all_by_label_contains(part).next().is_some()
-}
 
 #[test]
 fn projects_are_saved_under_the_ending_of_their_kind() {
@@ -31,14 +25,14 @@ fn projects_are_saved_under_the_ending_of_their_kind() {
 fn hard_cases_stop_at_once_and_are_named_in_words() {
     let mut harness = editor();
     harness.reveal(Pane::Check);
-    harness.get_by_label("Run the hard cases").click_accesskit();
+    harness.tap_label("Run the hard cases");
     harness.see_label("roughness at its ends");
-    assert!(!is_shown(&harness, "roughness-at-its-ends"));
+    assert!(!harness.tells("roughness-at-its-ends"));
     harness.tap_label("Stop");
     // Whatever is being measured.
     assert!(harness.has("Run the hard cases"));
-    assert!(is_shown(&harness, "Stopped."));
-    harness.get_by_label("Run the hard cases").click_accesskit();
+    assert!(harness.tells("Stopped."));
+    harness.tap_label("Run the hard cases");
     harness.see_label("Stop");
     harness.tap_label("Stop");
 }

@@ -11,7 +11,7 @@ use glossmith::{
 
 /// Chooses *Export…* and types a path.
 fn ask_for(harness: &mut Editor, path: &std::path::Path) {
-    harness.request(Action::Do(Command::Export));
+    harness.command(Command::Export);
     harness.type_path(path, "Save");
 }
 
@@ -29,9 +29,9 @@ fn what_an_export_loses_is_shown_before_it_is_written() {
     harness.check_accessibility();
     assert!(!path.exists(), "it was written before anybody agreed");
     for words in ["approximated", "Difference", "As the file shows it"] {
-        assert!(harness.query_all_by_label_contains(words).count() > 0, "{words}");
+        assert!(harness.tells(words), "{words}");
     }
-    assert!(harness.query_by_label_contains("two balls differ").is_some());
+    assert!(harness.tells("two balls differ"));
     harness.click(Role::Button, "Cancel");
     harness.run_steps(3);
     assert!(harness.query_by_label("Write the file").is_none() && !path.exists());

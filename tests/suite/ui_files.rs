@@ -2,8 +2,6 @@
 
 use std::{path::Path, path::PathBuf, sync::Arc};
 
-use egui::accesskit::Role;
-use egui_kittest::kittest::Queryable as _;
 use glossmith::{
     app::actions::Action,
     scene::{ModelSource, environment::EnvironmentSource, texture::TextureTarget},
@@ -106,7 +104,7 @@ fn every_kind_of_file_can_be_dropped() {
     harness.drop_on(&[project]);
     // The document has unsaved edits: it is asked for first.
     harness.see_label("Discard");
-    harness.get_by_role_and_label(Role::Button, "Discard").click_accesskit();
+    harness.press("Discard");
     harness.wait("the project", |app| app.document().render.samples == 2);
 
     let other = folder.path("notes.txt");

@@ -26,6 +26,11 @@ impl Editor {
         self.query_by_label(label).is_some()
     }
 
+    /// Whether a text with these words is shown anywhere.
+    pub fn tells(&self, part: &str) -> bool {
+        self.query_all_by_label_contains(part).next().is_some()
+    }
+
     /// Brings a panel to the front.
     pub fn reveal(&mut self, pane: Pane) {
         self.state_mut().reveal(pane);

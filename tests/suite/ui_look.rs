@@ -52,10 +52,6 @@ fn inspecting() -> Editor {
     harness
 }
 
-fn says(harness: &Editor, text: &str) -> bool {
-    harness.query_all_by_label_contains(text).count() > 0
-}
-
 fn shown(harness: &Editor) -> std::sync::Arc<Picture> {
     harness.state().snapshot().picture.clone().expect("it was waited for")
 }
@@ -63,27 +59,44 @@ fn shown(harness: &Editor) -> std::sync::Arc<Picture> {
 #[test]
 fn the_inspector_tells_of_the_pixel_under_the_pointer() {
     let mut harness = inspecting();
-    assert!(says(&harness, "Move the pointer over the image"));
+    assert!(harness.tells("Move the pointer over the image"));
     for pixel in [[20, 12], [3, 2]] {
         hover_pixel(&mut harness, pixel);
         let [x, y] = pixel;
-        assert!(says(&harness, &format!("{x}, {y} of 40 × 24")));
+        assert!(harness.tells(&format!("{x}, {y} of 40 × 24")));
         let index = (y * 40 + x) as usize;
         let [r, g, b, _] = picture(&harness)[index];
-        assert!(says(&harness, &format!("{r:.4}  {g:.4}  {b:.4}")), "its linear colour");
+        assert!(harness.tells(&format!("{r:.4}  {g:.4}  {b:.4}")), "its linear colour");
         let bytes = &shown(&harness).rgba[4 * index..4 * index + 3];
-        assert!(says(
-            &harness,
-            &format!("#{:02x}{:02x}{:02x}", bytes[0], bytes[1], bytes[2])
-        ));
-        assert!(says(&harness, "of the mean luminance"), "its error");
+        assert!(harness.tells(&format!("#{:02x}{:02x}{:02x}", bytes[0], bytes[1], bytes[2])));
+        assert!(harness.tells("of the mean luminance"), "its error");
     }
     // The middle shows the model, the corner the background.
-    assert!(says(&harness, "none: the background"));
+    assert!(harness.tells("none: the background"));
     hover_pixel(&mut harness, [20, 12]);
     let name = harness.material().name.clone();
-    assert!(says(&harness, &name) && !says(&harness, "none: the background"));
-    assert!(says(&harness, "Histogram of the image") && says(&harness, "Too bright for the screen"));
+    assert!(harness.tells(&name) && !harness.tells("none: the background"));
+    assert!(harness.tells("Histogram of the image") && harness.tells("Too bright for the screen"));
+}
+
+/// Also while a coarse step is shown.
+#[test]
+fn the_inspector_names_pixels_of_the_full_size() {
+    let mut document = small_document();
+    (document.render.width, document.render.height) = (1200, 1200);
+    let mut harness = editor_with(document, Vec::new());
+    harness.command(Command::Pause);
+    harness.reveal(Pane::Inspector);
+    harness.request(Action::LookFrom(90.0, 0.0));
+    harness.wait("a coarse step", |app| {
+        app.snapshot()
+            .picture
+            .as_ref()
+            .is_some_and(|picture| picture.reduction > 1)
+    });
+    harness.hover_at(place(&harness).center());
+    harness.run_steps(3);
+    assert!(harness.tells("of 1200 × 1200"));
 }
 
 #[test]
@@ -145,7 +158,7 @@ fn the_pictures_own_pixels_are_magnified_without_moving_the_camera() {
     wheel(&mut harness, at, 300.0);
     assert!(harness.has(whole), "it is not magnified");
     assert!(
-        says(&harness, "30, 16 of 40 × 24"),
+        harness.tells("30, 16 of 40 × 24"),
         "what is under the pointer stays there"
     );
     // Moved by the middle button, the pixel goes with the pointer: to the side, as all of the height fits.
@@ -165,7 +178,7 @@ fn the_pictures_own_pixels_are_magnified_without_moving_the_camera() {
         harness.run_steps(2);
     }
     button(&mut harness, to, false);
-    assert!(says(&harness, "30, 16 of 40 × 24"), "it was not moved");
+    assert!(harness.tells("30, 16 of 40 × 24"), "it was not moved");
     assert_eq!(*harness.document(), before, "the camera stays");
     harness.click_on(|harness| harness.get_by_label(whole).rect());
     assert!(!harness.has(whole));

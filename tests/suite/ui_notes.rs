@@ -4,11 +4,14 @@ use std::path::Path;
 
 use egui::accesskit::Role;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use glossmith::app::{Options, actions::Action, actions::Command, library::Change, workspaces::LOOK};
+use glossmith::{
+    app::{App, Options, actions::Action, actions::Command, library::Change, workspaces::LOOK},
+    store::PRESETS,
+};
 
 use super::{
-    cli_support::Workplace,
-    ui::{Editor, editor_of, options},
+    cli_support::{Workplace, read_exr},
+    ui::{Editor, editor_of, options, picture},
     worker::small_document,
 };
 
@@ -27,10 +30,6 @@ fn editor(folder: &Path, samples: u32) -> Editor {
 
 /// The name of the button of a note about an image that is not finished.
 const RENDER: &str = "Render to a file… of message";
-
-fn has(harness: &Editor, part: &str) -> bool {
-    harness.query_all_by_label_contains(part).next().is_some()
-}
 
 fn save(harness: &mut Editor, command: Command, path: &Path, note: &str) {
     harness.command(command);
@@ -63,9 +62,9 @@ fn each_save_is_reported_over_the_viewport() {
         (Command::SaveAs, "scene.png", "Saved scene.png: 3 samples"),
     ] {
         save(&mut harness, command, &path(name), note);
-        assert!(path(name).is_file() && !has(&harness, "Render to a file"));
+        assert!(path(name).is_file() && !harness.tells("Render to a file"));
         close(&mut harness);
-        assert!(!has(&harness, note));
+        assert!(!harness.tells(note));
     }
     // Saved again without being asked for a name.
     harness.command(Command::Save);
@@ -75,11 +74,11 @@ fn each_save_is_reported_over_the_viewport() {
     harness.see_label("Copied the image: 3 samples");
     close(&mut harness);
     harness.request(Action::ChangeSnapshots(Change::Add));
-    harness.see("the snapshot", |harness| has(harness, "Pinned "));
+    harness.see("the snapshot", |harness| harness.tells("Pinned "));
     close(&mut harness);
     harness.request(Action::ChangeLibrary(Change::Add));
     harness.see("the preset", |harness| {
-        has(harness, ".json: one of your presets") && harness.has("New name")
+        harness.tells(".json: one of your presets") && harness.has("New name")
     });
     harness.key_press(egui::Key::Escape);
     harness.run_steps(2);
@@ -93,8 +92,27 @@ fn each_save_is_reported_over_the_viewport() {
     close(&mut harness);
     harness.command(Command::QueuePicture);
     harness.type_path(&path("queued.png"), "Save");
-    harness.see("the render", |harness| has(harness, "queued.png: 3 samples"));
+    harness.see("the render", |harness| harness.tells("queued.png: 3 samples"));
     harness.check_accessibility();
+}
+
+/// What is written was shown when it was asked for, whatever is edited while its path is chosen.
+#[test]
+fn a_save_is_of_what_was_shown() {
+    let folder = Workplace::new();
+    let mut harness = editor(folder.root(), 3);
+    for (command, name) in [(Command::SavePicture, "shown.exr"), (Command::SaveLayers, "deep.exr")] {
+        harness.request(Action::UseMaterial(Box::default()));
+        harness.settle();
+        let shown = picture(&harness);
+        harness.command(command);
+        harness.request(Action::UseMaterial(Box::new(PRESETS[5].clone())));
+        harness.wait("the edit", App::is_settled);
+        assert_ne!(picture(&harness), shown);
+        harness.type_path(&folder.path(name), "Save");
+        harness.see("the note", |harness| harness.tells(&format!("Saved {name}")));
+        assert_eq!(read_exr(&folder.path(name)).pixels, shown, "{name}");
+    }
 }
 
 /// The screenshot comes from the GPU that paints the window.
@@ -133,13 +151,13 @@ fn a_save_of_an_unfinished_image_offers_to_render_it() {
         };
         let note = format!("{saved}{count} of 60000 samples");
         save(&mut harness, command, &folder.path(name), &note);
-        assert!(has(&harness, RENDER));
+        assert!(harness.tells(RENDER));
         close(&mut harness);
-        assert!(!has(&harness, RENDER));
+        assert!(!harness.tells(RENDER));
     }
     harness.command(Command::CopyPicture);
-    harness.see("the copy", |harness| has(harness, RENDER));
+    harness.see("the copy", |harness| harness.tells(RENDER));
     harness.click_on(|harness| harness.get_by_label_contains(RENDER).rect());
     harness.type_path(&folder.path("whole.png"), "Save");
-    harness.see("the queue", |harness| has(harness, "whole.png"));
+    harness.see("the queue", |harness| harness.tells("whole.png"));
 }

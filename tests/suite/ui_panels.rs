@@ -47,7 +47,7 @@ fn textures_have_rows_that_switch_them() {
     let textured = picture(&harness);
     for label in ["Specular roughness texture", "Base colour texture"] {
         let switch = |harness: &mut Editor| {
-            harness.get_by_role_and_label(Role::CheckBox, label).click_accesskit();
+            harness.tap(Role::CheckBox, label);
             harness.settle();
         };
         let before = harness.document().clone();
@@ -120,20 +120,18 @@ fn environments_are_listed_with_pictures_and_files_stay_in_the_list() {
         ..options()
     });
     harness.settle();
-    harness.state_mut().reveal(Pane::Lighting);
+    harness.reveal(Pane::Lighting);
     harness.request(Action::Open(light.clone()));
     let source = EnvironmentSource::File(light);
     harness.wait("the light", |app| app.document().lighting.environment == source);
     harness.settle();
     // Before a photograph the ground is its shadow alone.
     assert_eq!(harness.document().lighting.ground.kind, GroundKind::ShadowCatcher);
-    harness.get_by_role_and_label(Role::Button, "Sky").click_accesskit();
+    harness.press("Sky");
     harness.wait("the sky", |app| {
         app.document().lighting.environment == EnvironmentSource::Sky
     });
-    harness
-        .get_by_role_and_label(Role::Button, "orange.hdr")
-        .click_accesskit();
+    harness.press("orange.hdr");
     harness.wait("the light again", |app| app.document().lighting.environment == source);
     // Studio, sky, furnace and the file.
     harness.see("the pictures", |_| {
@@ -148,18 +146,23 @@ fn environments_are_listed_with_pictures_and_files_stay_in_the_list() {
 #[test]
 fn the_palette_leads_to_parameters_and_panels() {
     let mut harness = editor();
+    let enter = |harness: &mut Editor, text: &str| {
+        harness.event(egui::Event::Text(text.to_owned()));
+        harness.run_steps(2);
+        harness.key_press(Key::Enter);
+        harness.run_steps(4);
+    };
+    let find = |harness: &mut Editor, words: &str| {
+        harness.command(Command::Palette);
+        enter(harness, words);
+    };
     harness.key_press_modifiers(Modifiers::COMMAND, Key::K);
     harness.run_steps(2);
     // Typed at once: the field has the keys.
-    harness.event(egui::Event::Text("spec rough".to_owned()));
-    harness.run_steps(2);
-    harness.key_press(Key::Enter);
-    harness.run_steps(4);
+    enter(&mut harness, "spec rough");
     let node = harness.get_by_label("Specular roughness");
     assert!(node.accesskit_node().is_focused(), "the row has the keys");
-    harness.event(egui::Event::Text("0.9".to_owned()));
-    harness.run_steps(2);
-    harness.key_press(Key::Enter);
+    enter(&mut harness, "0.9");
     harness.settle();
     assert_eq!(harness.material().roughness, 0.9);
     // Digits after Enter are not those of the view.
@@ -168,38 +171,27 @@ fn the_palette_leads_to_parameters_and_panels() {
     harness.run_steps(2);
     assert_eq!(harness.document().camera, camera);
     // What does not apply is found, and leads to what makes it apply.
-    harness.command(Command::Palette);
-    harness.event(egui::Event::Text("coat rough".to_owned()));
-    harness.run_steps(2);
-    harness.key_press(Key::Enter);
-    harness.run_steps(4);
+    find(&mut harness, "coat rough");
     let node = harness.get_by_label("Coat weight");
     assert!(node.accesskit_node().is_focused());
-    harness.event(egui::Event::Text("1".to_owned()));
-    harness.run_steps(2);
-    harness.key_press(Key::Enter);
+    enter(&mut harness, "1");
     harness.settle();
     assert!(harness.has("Coat on the base") && harness.has("Coat darkening"));
     harness.undo();
-    for (words, key, value) in [
-        ("specular lobe", Key::ArrowDown, Lobe::ALL[1]),
-        ("specular lobe", Key::ArrowUp, Lobe::ALL[0]),
-    ] {
-        harness.command(Command::Palette);
-        harness.event(egui::Event::Text(words.to_owned()));
-        harness.run_steps(2);
-        harness.key_press(Key::Enter);
-        harness.run_steps(4);
+    for (key, value) in [(Key::ArrowDown, Lobe::ALL[1]), (Key::ArrowUp, Lobe::ALL[0])] {
+        find(&mut harness, "specular lobe");
         harness.key_press(key);
         harness.run_steps(2);
         assert_eq!(harness.material().lobe, value);
     }
-    harness.command(Command::Palette);
-    harness.event(egui::Event::Text("show samples".to_owned()));
-    harness.run_steps(2);
-    harness.key_press(Key::Enter);
-    harness.run_steps(3);
-    assert!(harness.has("Samples view angle"), "the panel is in front");
+    find(&mut harness, "f-number");
+    let node = harness.get_by_role_and_label(Role::SpinButton, "f-number");
+    assert!(node.accesskit_node().is_focused());
+    find(&mut harness, "race");
+    assert!(
+        harness.has("Run the race"),
+        "the panel is in front, and nothing has begun"
+    );
 }
 
 /// In narrow columns rows wrap: no control reaches beyond its column, where it would be cut.
@@ -294,6 +286,11 @@ fn a_named_curve_becomes_a_custom_one_in_its_panel() {
             }
         }
         assert!(!harness.has("Edit as custom"));
+        let plot = harness.get_by_label("The curve D over ξ").rect();
+        harness.drag(plot.center() - egui::vec2(90.0, 40.0), egui::vec2(9.0, 0.0));
+        harness.run_steps(60);
+        let layers = harness.ctx.memory(|memory| memory.areas().visible_layer_ids());
+        assert!(layers.iter().all(|layer| layer.order != egui::Order::Tooltip));
         harness.undo();
         assert_eq!(*harness.document(), before);
     }
@@ -356,10 +353,10 @@ fn a_look_is_matched_used_and_undone() {
     harness.click(Role::ComboBox, "Compare the lobe");
     harness.click(Role::Button, "GGX");
     // The panel may have to be scrolled to reach the buttons, which accessibility does by itself.
-    harness.get_by_label("Match look").click_accesskit();
+    harness.tap_label("Match look");
     harness.see_label("Use it");
     let before = harness.document().clone();
-    harness.get_by_label("Use it").click_accesskit();
+    harness.tap_label("Use it");
     harness.settle();
     let material = harness.material();
     assert_eq!((material.lobe, material.curve), (Lobe::Geometric, Curve::Custom));

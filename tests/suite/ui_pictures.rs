@@ -73,7 +73,7 @@ fn cover(window: &mut image::RgbaImage, place: Rect) {
 #[test]
 fn camera_and_curve() {
     let mut harness = editor(options());
-    harness.state_mut().reveal(Pane::Camera);
+    harness.reveal(Pane::Camera);
     harness.settle();
     compare(&mut harness, "camera-and-curve");
 }
@@ -81,8 +81,8 @@ fn camera_and_curve() {
 #[test]
 fn two_compared_beside_effects() {
     let mut harness = editor(options());
-    harness.state_mut().reveal(Pane::Effects);
-    harness.state_mut().reveal(Pane::Snapshots);
+    harness.reveal(Pane::Effects);
+    harness.reveal(Pane::Snapshots);
     harness.command(Command::Compare);
     harness.settle();
     // B's roughness is found, and then rendered with.
@@ -98,9 +98,9 @@ fn two_compared_beside_effects() {
 #[test]
 fn the_scene_as_a_tree() {
     let mut harness = editor(options());
-    harness.state_mut().reveal(Pane::Scene);
+    harness.reveal(Pane::Scene);
     // Small pictures of environments come when they are made.
-    harness.state_mut().reveal(Pane::Camera);
+    harness.reveal(Pane::Camera);
     harness.settle();
     compare(&mut harness, "scene");
 }
@@ -131,8 +131,8 @@ fn the_race_beside_the_convergence() {
 #[test]
 fn the_browser_of_presets() {
     let mut harness = editor(options());
-    harness.state_mut().reveal(Pane::Presets);
-    harness.state_mut().reveal(Pane::Camera);
+    harness.reveal(Pane::Presets);
+    harness.reveal(Pane::Camera);
     harness.settle();
     compare(&mut harness, "browser");
 }

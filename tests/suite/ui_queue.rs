@@ -2,21 +2,16 @@
 
 use std::path::Path;
 
-use egui::{Key, Modifiers, ViewportCommand, ViewportEvent, ViewportId, accesskit::Role};
+use egui::{Key, ViewportCommand, ViewportEvent, ViewportId, accesskit::Role};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use glossmith::app::{actions::Action, actions::Command, layout::Pane};
 
 use super::{
     cli_support::Workplace,
-    ui::{Editor, editor},
+    ui::{Editor, editor, editor_with},
     ui_files::says,
+    worker::small_document,
 };
-
-fn set(harness: &mut Editor, label: &str, value: f64) {
-    let field = harness.get_by_role_and_label(Role::SpinButton, label);
-    field.set_value_accesskit(value);
-    harness.run_steps(2);
-}
 
 /// Has a turn queued, of so many frames and samples, written as this.
 fn turn(harness: &mut Editor, form: &str, output: &Path, [frames, samples]: [f64; 2]) {
@@ -24,14 +19,25 @@ fn turn(harness: &mut Editor, form: &str, output: &Path, [frames, samples]: [f64
     // A sheet is first measured, then shown.
     harness.run_steps(2);
     harness.check_accessibility();
-    set(harness, "Turntable frames", frames);
-    set(harness, "Turntable samples", samples);
-    set(harness, "Turntable width", 20.0);
-    set(harness, "Turntable height", 16.0);
+    harness.set("Turntable frames", frames);
+    harness.set("Turntable samples", samples);
+    harness.set("Turntable width", 20.0);
+    harness.set("Turntable height", 16.0);
     harness.tap(Role::ComboBox, "Turntable form");
     harness.tap_label(form);
     harness.write("Turntable output", &output.display().to_string());
     harness.press("Add to the queue");
+}
+
+#[test]
+fn how_long_a_turntable_takes_is_told_once_it_is_known() {
+    let mut document = small_document();
+    document.render.samples = 1;
+    let mut harness = editor_with(document, Vec::new());
+    harness.settle();
+    harness.command(Command::Turntable);
+    harness.run_steps(2);
+    assert!(!harness.tells("rendered in about"));
 }
 
 #[test]
@@ -121,7 +127,7 @@ fn the_viewport_turns_until_escape_and_the_document_stays() {
     harness.command(Command::ResetMaterial);
     let before = yaw(&harness);
     harness.see("a turn", |harness| yaw(harness) != before);
-    harness.key_press_modifiers(Modifiers::NONE, Key::Escape);
+    harness.key_press(Key::Escape);
     harness.settle();
     assert_eq!(yaw(&harness), document.camera.yaw_deg);
     harness.key_press(Key::T);

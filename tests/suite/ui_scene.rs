@@ -16,7 +16,7 @@ use super::{
 
 pub fn choose(harness: &mut Editor, menu: &str, item: &str) {
     harness.tap(Role::ComboBox, menu);
-    harness.get_by_role_and_label(Role::Button, item).click_accesskit();
+    harness.press(item);
     harness.settle();
 }
 
@@ -59,9 +59,9 @@ fn a_click_says_what_is_sharp() {
     let sharp = picture(&harness);
     harness.reveal(Pane::Camera);
     harness.set("f-number", 1e6);
-    assert!(harness.query_by_label_contains("Nothing blurs").is_some());
+    assert!(harness.tells("Nothing blurs"));
     harness.set("f-number", 0.05);
-    assert!(harness.query_by_label_contains("Nothing blurs").is_none());
+    assert!(!harness.tells("Nothing blurs"));
     harness.settle();
     let at_target = picture(&harness);
     assert_ne!(at_target, sharp);
@@ -195,8 +195,9 @@ fn ctrl_shift_and_a_click_explain_the_pixel() {
     harness.event(egui::Event::ModifiersChanged(Modifiers::NONE));
     harness.run_steps(2);
     assert!(harness.has("Path trace of this pixel"));
-    let told = |text: &str| harness.query_by_label_contains(text).is_some();
-    assert!(told("camera      from") && told("bounce 0") && told("contribution"));
+    for text in ["camera      from", "bounce 0", "contribution"] {
+        assert!(harness.tells(text), "{text}");
+    }
     assert_eq!(harness.document(), &before, "nothing is edited");
     harness.tap_label("Close");
     assert!(!harness.has("Path trace of this pixel"));
@@ -218,11 +219,11 @@ fn the_part_below_a_dragged_preset_is_named() {
         harness.hover_at(from.lerp(to, share));
         harness.run_steps(2);
     }
-    assert!(harness.query_by_label_contains("Drop on ").is_some());
+    assert!(harness.tells("Drop on "));
     harness.drop_at(to);
     harness.run_steps(3);
     assert_eq!(harness.material().name, "Plastic blue");
-    assert!(harness.query_by_label_contains("Drop on ").is_none());
+    assert!(!harness.tells("Drop on "));
 }
 
 /// Charts end within their panels, and the menu *View* within the window.
@@ -256,7 +257,7 @@ fn panels_are_closed_and_come_back() {
         harness.run_steps(3);
         harness.click(Role::CheckBox, "Snapshots");
     };
-    let is_there = |harness: &Editor| harness.query_by_label_contains("Pin a snapshot").is_some();
+    let is_there = |harness: &Editor| harness.tells("Pin a snapshot");
     harness.reveal(Pane::Snapshots);
     assert!(is_there(&harness));
     toggle(&mut harness);

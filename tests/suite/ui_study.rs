@@ -49,7 +49,7 @@ fn a_race_is_run_and_its_winner_taken() {
     assert!(harness.has("Time against bias"), "the chart is shown");
     assert_eq!(harness.document().render.strategy, Strategy::Mis);
     harness.tap_label("Equal error");
-    harness.get_by_label("Use Light sampling only").click_accesskit();
+    harness.tap_label("Use Light sampling only");
     harness.settle();
     assert_eq!(harness.document().render.strategy, Strategy::Light);
     harness.undo();
@@ -68,7 +68,7 @@ fn racing(seconds: f64) -> Editor {
 #[test]
 fn a_race_can_be_stopped() {
     let mut harness = racing(300.0);
-    harness.get_by_label("Stop").click_accesskit();
+    harness.tap_label("Stop");
     harness.see_label("Run the race");
     // The viewport renders again.
     harness.wait("a finished picture", glossmith::app::App::is_settled);
@@ -82,23 +82,19 @@ fn the_ledger_is_measured_on_demand() {
     // Nothing else is measured meanwhile.
     harness.reveal(Pane::Race);
     assert!(harness.get_by_label("Run the race").accesskit_node().is_disabled());
-    harness.state_mut().reveal(Pane::Effects);
+    harness.reveal(Pane::Effects);
     if cfg!(not(feature = "thorough")) {
         // It takes two seconds for each effect.
         harness.see_label("Stop");
-        harness.get_by_label("Stop").click_accesskit();
+        harness.tap_label("Stop");
         harness.see_label("Stopped.");
         return;
     }
     harness.see("the ledger", |harness| {
         let line = "Schlick's Fresnel (instead of exact): ";
-        harness.query_by_label_contains(line).is_some()
+        harness.tells(line)
     });
-    assert!(
-        harness
-            .query_by_label_contains("ms for one sample of every pixel")
-            .is_some()
-    );
+    assert!(harness.tells("ms for one sample of every pixel"));
     // What was measured of an effect stands beside the reason for it, too.
     assert!(harness.query_all_by_label_contains(" · ").count() > 2);
 }

@@ -46,11 +46,6 @@ fn own(harness: &Editor, target: TextureTarget) -> Option<UserTexture> {
     harness.material().user_textures.get(target).cloned()
 }
 
-fn click(harness: &mut Editor, role: Role, label: &str) {
-    harness.get_by_role_and_label(role, label).click_accesskit();
-    harness.run_steps(4);
-}
-
 #[test]
 fn a_texture_is_chosen_placed_and_removed() {
     let folder = Workplace::new();
@@ -58,10 +53,10 @@ fn a_texture_is_chosen_placed_and_removed() {
     let mut harness = on_a_sphere(&folder);
     let plain = picture(&harness);
     let before = harness.document().clone();
-    click(&mut harness, Role::Button, "Texture of the base colour");
+    harness.tap(Role::Button, "Texture of the base colour");
     harness.see_label("Choose a texture");
     harness.write("Path", file.to_str().unwrap());
-    click(&mut harness, Role::Button, "Open");
+    harness.tap(Role::Button, "Open");
     harness.wait("the texture", |app| {
         app.document().materials[0]
             .user_textures
@@ -73,14 +68,12 @@ fn a_texture_is_chosen_placed_and_removed() {
     assert!(textured != plain);
     assert_eq!(own(&harness, TextureTarget::BaseColor), Some(UserTexture::of(file)));
     // Its switch, its placement.
-    click(&mut harness, Role::CheckBox, "Base colour texture");
+    harness.tap(Role::CheckBox, "Base colour texture");
     harness.settle();
     assert!(picture(&harness) != textured && own(&harness, TextureTarget::BaseColor).is_some());
     harness.undo();
     assert!(picture(&harness) == textured);
-    harness
-        .get_by_label("Placement of the base colour texture")
-        .click_accesskit();
+    harness.tap_label("Placement of the base colour texture");
     // It unfolds by and by.
     harness.see_label("Base colour texture rotation");
     harness.run_steps(20);
@@ -98,8 +91,8 @@ fn a_texture_is_chosen_placed_and_removed() {
     harness.undo();
     assert!(picture(&harness) == textured);
     // Taken off by its menu, and brought back.
-    click(&mut harness, Role::Button, "Menu of the base colour texture");
-    click(&mut harness, Role::Button, "Remove");
+    harness.tap(Role::Button, "Menu of the base colour texture");
+    harness.tap(Role::Button, "Remove");
     harness.settle();
     assert_eq!(own(&harness, TextureTarget::BaseColor), None);
     harness.undo();

@@ -40,9 +40,7 @@ fn keys_look_from_the_sides_in_parallel_rays() {
     // And by its row.
     harness.reveal(Pane::Camera);
     harness.tap(Role::ComboBox, "Projection");
-    harness
-        .get_by_role_and_label(Role::Button, "Orthographic")
-        .click_accesskit();
+    harness.press("Orthographic");
     harness.settle();
     assert_eq!(camera(&harness).projection, Projection::Orthographic);
     for _ in 0..5 {
@@ -74,9 +72,7 @@ fn lit() -> Editor {
 fn a_light_is_hidden_from_the_camera_by_its_row() {
     let mut harness = lit();
     let (before, shown) = (harness.document().clone(), picture(&harness));
-    harness
-        .get_by_role_and_label(Role::CheckBox, "Area light 1 hidden from camera")
-        .click_accesskit();
+    harness.tap(Role::CheckBox, "Area light 1 hidden from camera");
     harness.settle();
     assert!(harness.document().lighting.area_lights[0].is_hidden);
     let brightest = |pixels: &[[f32; 4]]| pixels.iter().map(|pixel| pixel[1]).fold(0.0, f32::max);
@@ -101,7 +97,7 @@ fn a_reference_picture_is_shown_under_over_and_beside_the_render() {
     harness.settle();
     let (before, shown) = (harness.document().clone(), picture(&harness));
     harness.reveal(Pane::Camera);
-    harness.get_by_label("Reference image").click_accesskit();
+    harness.tap_label("Reference image");
     harness.type_path(&file, "Open");
     let named = |harness: &Editor, place: &str| {
         let name = format!("Reference image {place} the render");
@@ -111,7 +107,7 @@ fn a_reference_picture_is_shown_under_over_and_beside_the_render() {
     let viewport = harness.get_by_label("Viewport").rect();
     for (choice, place) in [("Over the render", "over"), ("Beside the render", "beside")] {
         harness.tap(Role::ComboBox, "Place of the reference");
-        harness.get_by_role_and_label(Role::Button, choice).click_accesskit();
+        harness.press(choice);
         harness.see(choice, |harness| named(harness, place).is_some());
     }
     let (now, beside) = (

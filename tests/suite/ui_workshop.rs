@@ -48,17 +48,12 @@ fn the_engine_chosen_in_the_menu_is_remembered() {
 fn a_check_can_be_stopped_and_leaves_the_viewport_its_time() {
     let mut harness = editor();
     harness.reveal(Pane::Check);
-    harness.get_by_label("Check this machine").click_accesskit();
+    harness.tap_label("Check this machine");
     harness.see_label("Checking samples against densities …");
     harness.command(Command::Restart);
     harness.wait("a picture beside the check", App::is_settled);
-    harness.see("what is left of it", |harness| {
-        harness
-            .query_all_by_label_contains("against densities … ")
-            .next()
-            .is_some()
-    });
-    harness.get_by_label("Stop").click_accesskit();
+    harness.see("what is left of it", |harness| harness.tells("against densities … "));
+    harness.tap_label("Stop");
     harness.see_label("Stopped.");
     // The word comes a moment before the thread is free.
     harness.see_label("Check this machine");
@@ -71,7 +66,7 @@ fn the_benchmark_is_run_in_its_section() {
     let mut harness = editor();
     harness.reveal(Pane::Check);
     harness.tap(Role::CheckBox, "Quick");
-    harness.get_by_label("Run the benchmark").click_accesskit();
+    harness.tap_label("Run the benchmark");
     harness.see("the result", |harness| harness.has("Copy the result"));
     harness.get_by_label("Run the benchmark");
     for what in ["samples, default", "rays, default"] {

@@ -33,10 +33,6 @@ fn at_first() -> Editor {
     harness
 }
 
-fn has(harness: &Editor, label: &str) -> bool {
-    harness.query_all_by_label_contains(label).next().is_some()
-}
-
 fn use_workspace(harness: &mut Editor, name: &str) {
     harness.tap_label(&format!("Workspace {name}"));
 }
@@ -53,7 +49,7 @@ fn the_window_begins_with_looks_and_measures_where_that_is_asked_for() {
         );
     }
     for told in ["samples/s", "error ", " %", "window "] {
-        assert!(!has(&harness, told), "{told:?} at the start");
+        assert!(!harness.tells(told), "{told:?} at the start");
     }
     assert!(harness.has("Specular roughness"), "the material");
     assert!(
@@ -61,12 +57,12 @@ fn the_window_begins_with_looks_and_measures_where_that_is_asked_for() {
         "what the paper needs is in Measure"
     );
     use_workspace(&mut harness, MEASURE);
-    assert!(has(&harness, "samples/s"), "the status bar tells numbers");
+    assert!(harness.tells("samples/s"), "the status bar tells numbers");
     for pane in [Pane::Convergence, Pane::Race, Pane::Effects] {
         assert!(harness.query_all_by_label(pane.title()).next().is_some(), "{pane:?}");
     }
     use_workspace(&mut harness, LOOK);
-    assert!(!has(&harness, "samples/s"));
+    assert!(!harness.tells("samples/s"));
     assert_eq!(*harness.document(), before, "workspaces are no edit");
 }
 
@@ -149,7 +145,7 @@ fn a_metal_is_edited_by_colours_or_as_measured() {
     harness.run_steps(3);
     let material = |harness: &Editor| harness.material().clone();
     let before = material(&harness);
-    harness.get_by_label("Edit as colours").click_accesskit();
+    harness.tap_label("Edit as colours");
     harness.settle();
     let colored = material(&harness);
     assert_eq!(colored, before.by_colors());
@@ -160,7 +156,7 @@ fn a_metal_is_edited_by_colours_or_as_measured() {
     );
     assert!(harness.has("Specular edge tint"), "the second colour");
     harness.tap_label("Measured metal…");
-    harness.get_by_role_and_label(Role::Button, "copper").click_accesskit();
+    harness.press("copper");
     harness.settle();
     assert_ne!(material(&harness), colored);
     harness.undo();

@@ -76,6 +76,17 @@ fn a_document_becomes_its_picture() {
     assert_eq!(*picture.image, session.image().expect("no GPU to fail"));
 }
 
+#[test]
+fn layers_are_of_what_was_there_when_they_were_asked_for() {
+    let worker = worker();
+    let mut document = small_document();
+    let before = finished(&worker, worker.submit(&document, Pace::Still));
+    let made = worker.make_layers();
+    document.materials[0].base_color = [0.0; 3];
+    worker.submit(&document, Pace::Still);
+    assert_eq!(made.recv().expect("an image").0.image, *before.image);
+}
+
 /// The panel says so: once every pixel has two samples.
 #[test]
 fn the_error_is_known_from_the_second_sample_on() {

@@ -141,13 +141,16 @@ impl App {
         } else if let Some(setting) = setting(key) {
             let is_light = key.starts_with("lighting.") || key == "scene.ground";
             self.reveal(if is_light { Pane::Lighting } else { Pane::Camera });
-            let mut group = setting.group;
-            if group == PICTURE_SIZE {
+            let (mut group, mut name) = (setting.group, setting.full_name());
+            if key == "camera.aperture" {
+                // The f-number stands for it.
+                (group, name) = ("Lens", "f-number".to_owned());
+            } else if group == PICTURE_SIZE {
                 // Rows that are shown where the viewport has the image's size.
                 self.shared.viewing.resolution = Resolution::Document;
                 group = "Image";
             }
-            keys::focus_row(ctx, group, setting.full_name());
+            keys::focus_row(ctx, group, name);
         }
     }
 
@@ -288,7 +291,7 @@ impl App {
             Command::SavePicture => self.ask(ctx, Purpose::SavePicture),
             Command::SaveLayers => self.ask(ctx, Purpose::SaveLayers),
             Command::SaveWindow => self.ask(ctx, Purpose::SaveWindow),
-            Command::CopyPicture => self.want_picture(Destination::Clipboard),
+            Command::CopyPicture => self.want_picture(None, Destination::Clipboard),
             Command::QueuePicture => self.ask(ctx, Purpose::QueuePicture),
         }
     }
@@ -378,7 +381,8 @@ impl App {
             let label = format!("Environment {}", environment_label(&source));
             self.of_browser(environment_key(&source), label, Action::UseEnvironment(source))
         });
-        let mut things: Vec<Findable> = shipped.chain(own).chain(environments).collect();
+        let mut things = vec![Findable::new("f-number".to_owned(), Action::Edit("camera.aperture"))];
+        things.extend(shipped.chain(own).chain(environments));
         for (number, view) in self.document.bookmarks.iter().enumerate() {
             things.push(Findable::new(
                 format!("View {}", view.name),

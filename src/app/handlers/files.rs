@@ -1,14 +1,14 @@
 //! Opening and saving: projects, materials, textures, what files name elsewhere. The window never waits for them.
 
-use std::path::{Path, PathBuf};
+use std::{path::Path, path::PathBuf, sync::mpsc::Receiver};
 
 use crate::{
     App,
     document::{AreaLightShape, Document, MaterialSettings, ProfileFile, Reference},
-    handlers::pictures::Destination,
+    handlers::pictures::{Asked, Destination},
     import::{endings, endings::ending, holds_model, light_profile, limits},
     new_document,
-    render::{output::format_of, queue::Task},
+    render::{output::format_of, queue::Task, worker::LayersMade},
     scene::{
         environment::EnvironmentSource,
         path_text::file_name,
@@ -39,8 +39,12 @@ pub struct Files {
     pub dropped_with: Vec<PathBuf>,
     /// The files that are shown, looked at for changes.
     pub watched: Watched,
-    /// Where the next whole image goes.
-    pub wanted_pictures: Vec<Destination>,
+    /// Images to be written, and where they go.
+    pub wanted_pictures: Vec<(Asked, Destination)>,
+    /// The image that a path is being chosen for.
+    pub asked: Option<Asked>,
+    /// The layers that a path is being chosen for, and the revision that they are of.
+    pub asked_layers: Option<(u64, Receiver<LayersMade>)>,
     /// The preset that is exported; the document's materials where there is none.
     pub exported: Option<MaterialSettings>,
 }
@@ -61,6 +65,8 @@ impl Files {
             dropped: None,
             dropped_with: Vec::new(),
             wanted_pictures: Vec::new(),
+            asked: None,
+            asked_layers: None,
             exported: None,
         })
     }
@@ -264,6 +270,11 @@ impl App {
             Purpose::QueuePicture | Purpose::SavePicture => format!("{project}.png"),
             _ => String::new(),
         };
+        match purpose {
+            Purpose::SavePicture => self.files.asked = self.asked(),
+            Purpose::SaveLayers => self.files.asked_layers = Some((self.revision, self.worker.make_layers())),
+            _ => {}
+        }
         self.dialogs.ask(purpose, suggestion, ctx);
     }
 
@@ -292,17 +303,20 @@ impl App {
             Purpose::OpenMeasured => self.shared.measured = Some(path),
             Purpose::WatchFolder => self.shared.shelves.watch(path),
             // The ending says what is saved: an image has the document inside, too.
-            Purpose::SaveProject if is_picture(&path) => self.want_picture(Destination::File(path)),
+            Purpose::SaveProject if is_picture(&path) => self.want_picture(None, Destination::File(path)),
             Purpose::SaveProject => self.save_project(as_json(path, KIND)),
             Purpose::SaveMaterial => self.save_material(as_json(path, "")),
             Purpose::Export => self.prepare_export(path),
-            Purpose::SaveLayers => self.worker.make_layers(path.with_extension("exr")),
+            Purpose::SaveLayers => self.write_layers(path.with_extension("exr")),
             Purpose::SaveWindow => self.window_picture = Some(path.with_extension("png")),
             Purpose::QueuePicture => self.enqueue(Task::Picture {
                 document: Box::new(self.document.clone()),
                 path: with_ending(path, "png"),
             }),
-            Purpose::SavePicture => self.want_picture(Destination::File(with_ending(path, "png"))),
+            Purpose::SavePicture => {
+                let asked = self.files.asked.take();
+                self.want_picture(asked, Destination::File(with_ending(path, "png")));
+            }
         }
     }
 

@@ -8,7 +8,7 @@ use crate::{
     App,
     document::MaterialSettings,
     handlers::files::finish,
-    render::{Progress, output, output::Layers, worker::Activity},
+    render::{output, worker::Activity, worker::Picture},
     services::{disk::Task, export::ready, messages::LogEntry},
     sheets::{dialogs::Purpose, export::Answer},
     store::{
@@ -21,6 +21,18 @@ use crate::{
 /// How long an image of the window may take to come.
 const PATIENCE: Duration = Duration::from_secs(20);
 
+/// An image that was asked for: as it was shown then, or as it has become since with nothing edited.
+pub struct Asked {
+    picture: Arc<Picture>,
+    revision: u64,
+}
+
+impl Asked {
+    fn is_whole(&self) -> bool {
+        self.picture.revision == self.revision && self.picture.reduction == 1
+    }
+}
+
 /// Where an image goes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Destination {
@@ -29,46 +41,52 @@ pub enum Destination {
 }
 
 impl App {
-    /// Hands the image over as soon as it is whole.
-    pub fn want_picture(&mut self, to: Destination) {
-        let snapshot = self.worker.snapshot();
-        let Some(picture) = &snapshot.picture else {
+    /// The image that is shown, to be saved.
+    pub fn asked(&self) -> Option<Asked> {
+        let picture = self.worker.snapshot().picture.clone()?;
+        let revision = self.revision;
+        Some(Asked { picture, revision })
+    }
+
+    /// Hands the image over as soon as it is whole: that which was asked for before, else that which is shown.
+    pub fn want_picture(&mut self, asked: Option<Asked>, to: Destination) {
+        let Some(asked) = asked.or_else(|| self.asked()) else {
             return self.warn("there is no image yet");
         };
-        if !self.is_whole(picture) && snapshot.activity == Activity::Rendering {
+        if !asked.is_whole() && self.worker.snapshot().activity == Activity::Rendering {
             self.say(LogEntry::done(
                 "The image follows once every pixel has a sample.".to_owned(),
             ));
         }
-        self.files.wanted_pictures.push(to);
+        self.files.wanted_pictures.push((asked, to));
     }
 
-    /// Delivers the image if one was requested. While something is being changed there are only small previews, which
-    /// do not count, unless rendering was stopped and nothing better will come.
+    /// Delivers the images that were requested. While something is being changed there are only small previews, which
+    /// do not count, unless nothing better will come: rendering was stopped, or something else is rendered.
     pub fn hand_over_pictures(&mut self, ctx: &egui::Context) {
-        if self.files.wanted_pictures.is_empty() {
-            return;
+        if !self.dialogs.is_asking() {
+            (self.files.asked, self.files.asked_layers) = (None, None);
         }
         let snapshot = self.worker.snapshot();
-        let Some(picture) = snapshot.picture.clone() else {
-            return;
-        };
-        let is_whole = self.is_whole(&picture);
-        let is_stopped = matches!(snapshot.activity, Activity::Paused | Activity::Idle);
-        if !is_whole && !is_stopped {
-            return;
+        let Some(latest) = &snapshot.picture else { return };
+        let wanted = self.files.wanted_pictures.iter_mut().map(|(asked, _)| asked);
+        for asked in wanted.chain(&mut self.files.asked) {
+            if asked.revision == latest.revision {
+                asked.picture = latest.clone();
+            }
         }
-        let [count, wanted] = [picture.samples_per_pixel, picture.document.render.samples];
-        let is_finished = is_whole && (snapshot.activity == Activity::Done || count >= wanted);
-        let size = match picture.reduction {
-            1 => String::new(),
-            reduction => format!("1/{reduction} of the size, "),
-        };
-        let details = size + &samples([count, wanted], is_finished);
-        for to in std::mem::take(&mut self.files.wanted_pictures) {
+        let is_stopped = matches!(snapshot.activity, Activity::Paused | Activity::Idle);
+        let revision = self.revision;
+        let is_ready = |(asked, _): &mut (Asked, _)| is_stopped || asked.is_whole() || asked.revision != revision;
+        let ready: Vec<_> = self.files.wanted_pictures.extract_if(.., is_ready).collect();
+        for (asked, to) in ready {
+            let is_done = snapshot.activity == Activity::Done && asked.revision == revision;
+            let (is_whole, picture) = (asked.is_whole(), asked.picture);
+            let [count, wanted] = [picture.samples_per_pixel, picture.document.render.samples];
+            let is_finished = is_whole && (is_done || count >= wanted);
+            let details = details(picture.reduction, [count, wanted], is_finished);
             match to {
                 Destination::File(path) => {
-                    let (picture, details) = (picture.clone(), details.clone());
                     self.write_beside(move || {
                         output::write(&path, picture.rendered(), &picture.document).map_err(crate::in_words)?;
                         Ok(LogEntry::done_with("Saved", &path, &details).finished(is_finished))
@@ -83,25 +101,36 @@ impl App {
         }
     }
 
-    /// Writes the layers that the renderer made.
-    pub fn write_layers(&mut self, path: PathBuf, layers: Box<Layers>, progress: &Progress) {
-        let is_finished = progress.is_done;
-        let samples = samples([progress.samples_per_pixel, progress.samples_wanted], is_finished);
+    /// Writes the layers that the renderer makes.
+    pub fn write_layers(&mut self, path: PathBuf) {
+        let asked = self.files.asked_layers.take();
+        // With the samples that have come since, where nothing was edited.
+        let is_past = |(revision, _): &(u64, _)| *revision != self.revision;
+        let made = asked
+            .filter(is_past)
+            .map_or_else(|| self.worker.make_layers(), |(_, made)| made);
         self.write_beside(move || {
+            let (layers, progress, reduction) = made.recv().map_err(|_| "there is no image yet")?;
             output::write_layers(&path, &layers).map_err(crate::in_words)?;
-            let details = format!("layers, {samples}");
+            let samples = [progress.samples_per_pixel, progress.samples_wanted];
+            let is_finished = progress.is_done && reduction == 1;
+            let details = format!("layers, {}", details(reduction, samples, is_finished));
             Ok(LogEntry::done_with("Saved", &path, &details).finished(is_finished))
         });
     }
 }
 
-/// How many samples an image has, of those wanted if it is not finished.
-fn samples([count, wanted]: [u32; 2], is_finished: bool) -> String {
+/// The size of an image where that is reduced, and how many samples it has, of those wanted if it is not finished.
+fn details(reduction: u32, [count, wanted]: [u32; 2], is_finished: bool) -> String {
+    let size = match reduction {
+        1 => String::new(),
+        reduction => format!("1/{reduction} of the size, "),
+    };
     let (of, last) = match is_finished {
         true => (String::new(), count),
         false => (format!("{count} of "), wanted),
     };
-    format!("{of}{last} sample{}", if last == 1 { "" } else { "s" })
+    format!("{size}{of}{last} sample{}", if last == 1 { "" } else { "s" })
 }
 
 impl App {

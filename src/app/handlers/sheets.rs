@@ -113,7 +113,7 @@ impl App {
                 Ok(leftovers) => {
                     let documents = leftovers.iter().filter(|leftover| leftover.contents.is_some());
                     self.note(format!("unsaved documents found: {}", documents.count()));
-                    self.leftovers = leftovers;
+                    self.leftovers.extend(leftovers);
                 }
                 Err(error) => self.warn(format!("unsaved edits are not kept for a crash: {error}")),
             }

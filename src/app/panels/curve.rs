@@ -164,7 +164,6 @@ impl CurvePanel {
         let places = places
             .filter(|[_, distance]| *distance <= curve.traits().plotted_max)
             .collect();
-        let is_drawn_on = self.dragged.is_some();
         let ends = [1.0, rounded_up(shown_max(curve, table))];
         let shown = plot(ui, "quantile", "ξ: share of the samples", ends).show(ui, |plot_ui| {
             plot_ui.line(line("D(ξ)", places, accent, 2.0));
@@ -176,19 +175,7 @@ impl CurvePanel {
                 plot_ui.points(Points::new("selected", *point).radius(5.5).color(white));
             }
         });
-        let response = shown.response.accessible_name("The curve D over ξ");
-        if is_drawn_on || self.selected.is_some() {
-            // The help would lie over what is being drawn, and over the point's numbers.
-            return;
-        }
-        // Beside the plot: at the pointer it would lie over what is looked at.
-        response.on_hover_ui(|ui| {
-            ui.label("The share ξ of the samples stays within the distance D of the mirror direction.");
-            if curve.has_table() {
-                let text = "Drag points (ctrl: in steps). Double-click adds or removes a point.";
-                widgets::note(ui, text);
-            }
-        });
+        shown.response.accessible_name("The curve D over ξ");
     }
 
     fn edit(&mut self, plot_ui: &PlotUi, points: &mut Vec<[f64; 2]>) {
@@ -230,7 +217,7 @@ impl CurvePanel {
     /// The selected point in numbers.
     fn selected_point(&mut self, ui: &mut Ui, points: &mut Vec<[f64; 2]>) {
         let Some(index) = self.selected.filter(|index| *index < points.len()) else {
-            let text = "Click a point to see its numbers; double-click adds and removes points.";
+            let text = "Drag points (ctrl: in steps). Click one for its numbers; double-click adds and removes points.";
             return widgets::note(ui, text);
         };
         let mut point = points[index];

@@ -121,8 +121,8 @@ fn choices(ui: &mut Ui, state: &mut RacePanel) {
         }
     }
     let style = NumberStyle::plain(0.01..=600.0, " s", 0.1, 2);
-    let label = "Time per technique";
-    let name = [label, label, "How long each of them renders."];
+    let help = "How long each technique renders.";
+    let name = ["Time per technique", "Time each", help];
     widgets::number_row(ui, name, &mut state.seconds, SECONDS, &style);
 }
 
@@ -133,12 +133,12 @@ fn outcome(ui: &mut Ui, desk: &mut Desk, state: &mut RacePanel, race: &Arc<Race>
         ui,
         format!(
             "Left: faster, to a noise of {}. Low: less bias against the most accurate image; hollow, with a line down: at \
-             most so much. Click a point to use its settings.",
+             most so much. Click a point or a name to use its settings.",
             percent(race.noise)
         ),
     );
     if race.runners.iter().any(Runner::is_limit) {
-        widgets::note(ui, "Too short to tell all biases: raise the time per technique.");
+        widgets::note(ui, "Too short to tell all biases: raise the time of each.");
     }
     let taken = table(ui, race, is_stale).or(charted);
     if let Some(index) = taken.filter(|_| !is_stale) {
@@ -203,15 +203,26 @@ fn table(ui: &mut Ui, race: &Race, is_stale: bool) -> Option<usize> {
     let mut order: Vec<(usize, &Runner)> = race.runners.iter().enumerate().collect();
     order.sort_by(|(_, a), (_, b)| a.time_to_noise.total_cmp(&b.time_to_noise));
     let mut taken = None;
-    Grid::new("runners").num_columns(4).striped(true).show(ui, |ui| {
+    Grid::new("runners").num_columns(3).striped(true).show(ui, |ui| {
         let to_noise = format!("To {}", percent(race.noise));
-        for heading in ["", to_noise.as_str(), "Bias", ""] {
+        for heading in ["", to_noise.as_str(), "Bias"] {
             ui.weak(heading);
         }
         ui.end_row();
         for (index, runner) in order {
             let text = RichText::new(&runner.label);
-            ui.label(if runner.is_on_front { text.strong() } else { text });
+            let text = if runner.is_on_front { text.strong() } else { text };
+            let button = ui.add_enabled(is_setting(runner) && !is_stale, Button::new(text).small());
+            let button = button.on_hover_text("Gives the document these settings. Undo takes it back.");
+            let button = button.on_disabled_hover_text(if is_stale {
+                "The race was run before the last changes: run it again."
+            } else {
+                "Not a setting of a document."
+            });
+            if button.clicked() {
+                taken = Some(index);
+            }
+            button.accessible_name(format!("Use {}", runner.label));
             let time = ui.label(duration(runner.time_to_noise));
             time.on_hover_text(format!(
                 "After {}: error {} ({} – {}), estimated {}; {:.1} samples per pixel",
@@ -223,17 +234,6 @@ fn table(ui: &mut Ui, race: &Race, is_stale: bool) -> Option<usize> {
                 runner.samples_per_pixel
             ));
             ui.label(bias(runner));
-            let button = ui.add_enabled(is_setting(runner) && !is_stale, Button::new("Use").small());
-            let button = button.on_hover_text("Gives the document these settings. Undo takes it back.");
-            let button = button.on_disabled_hover_text(if is_stale {
-                "The race was run before the last changes: run it again."
-            } else {
-                "Not a setting of a document."
-            });
-            if button.clicked() {
-                taken = Some(index);
-            }
-            button.accessible_name(format!("Use {}", runner.label));
             ui.end_row();
         }
     });
@@ -262,8 +262,8 @@ fn pictures(ui: &mut Ui, desk: &Desk, state: &mut RacePanel, race: &Arc<Race>) {
     let textures = &pictured.textures[usize::from(state.shows_equal_error)];
     ui.horizontal_wrapped(|ui| {
         for (runner, texture) in std::iter::zip(&race.runners, textures) {
-            ui.vertical(|ui| {
-                ui.set_width(THUMBNAIL);
+            // In rows: of a place without a size it is not known that the next row is to begin.
+            ui.allocate_ui_with_layout(Vec2::splat(THUMBNAIL), Layout::top_down(Align::Min), |ui| {
                 ui.add(egui::Image::new(texture).max_width(THUMBNAIL).alt_text(&runner.label));
                 let (error, seconds) = if state.shows_equal_error {
                     (race.equal_error, runner.equal_error_seconds)

@@ -2,7 +2,7 @@
 
 use std::{
     path::{Path, PathBuf},
-    sync::mpsc::{Receiver, Sender, channel},
+    sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel},
     time::{Duration, Instant},
 };
 
@@ -15,6 +15,9 @@ use crate::{
 
 /// Shortest time between two copies of a document that keeps changing.
 pub const INTERVAL: Duration = Duration::from_secs(5);
+/// After how long the thread looks again for what crashes left; each time twice as long. A process that is killed goes on
+/// holding its file while its memory and its GPU are taken back.
+const LOOK_AGAIN: Duration = Duration::from_secs(1);
 /// How long the window waits for the thread to end when it is closed.
 const FAREWELL: Duration = Duration::from_secs(2);
 
@@ -165,27 +168,40 @@ impl Drop for Autosave {
     }
 }
 
-/// Says what crashes left, then carries out orders until the window is gone.
+/// Says what crashes left and carries out orders until the window is gone.
 fn work(folder: &Path, witness: &Witness, ordered: &Receiver<Order>, report: &dyn Fn(Report)) -> Result<(), FileError> {
-    let leftovers = recovery::leftovers(folder)?;
-    let load = |(index, file): (usize, &RecoveryFile)| Leftover {
-        index,
-        contents: file.has_document().then(|| file.load().map_err(crate::in_words)),
-        report: file.report(),
+    let look = |files: &mut Files| -> Result<(), FileError> {
+        let load = |(at, file): (usize, &RecoveryFile)| Leftover {
+            index: files.leftovers.len() + at,
+            contents: file.has_document().then(|| file.load().map_err(crate::in_words)),
+            report: file.report(),
+        };
+        let found = recovery::leftovers(folder)?;
+        if !found.is_empty() {
+            report(Ok(found.iter().enumerate().map(load).collect()));
+        }
+        files.leftovers.extend(found.into_iter().map(Some));
+        Ok(())
     };
-    if !leftovers.is_empty() {
-        report(Ok(leftovers.iter().enumerate().map(load).collect()));
-    }
     let mut files = Files {
         own: RecoveryFile::open(folder)?,
-        leftovers: leftovers.into_iter().map(Some).collect(),
+        leftovers: Vec::new(),
         is_empty: true,
         is_kept: true,
     };
+    look(&mut files)?;
     witness.known().copy = Some(files.own.path().to_owned());
     let mut has_failed = false;
-    for order in ordered {
-        let done = order(&mut files);
+    let mut wait = LOOK_AGAIN;
+    loop {
+        let done = match ordered.recv_timeout(wait) {
+            Ok(order) => order(&mut files),
+            Err(RecvTimeoutError::Timeout) => {
+                wait *= 2;
+                look(&mut files)
+            }
+            Err(RecvTimeoutError::Disconnected) => break,
+        };
         let fails = done.is_err();
         // Said once, not every few seconds for as long as a disk is full.
         if let (Err(error), false) = (done, has_failed) {

@@ -117,9 +117,9 @@ fn of_parameter<T>(parameter: &Parameter<T>, of: &T) -> Option<Findable> {
     })
 }
 
-/// What has all the words of the search, those first that have them in their names; commands, then parameters, then
-/// panels, then what can be used: materials, environments, views, files, workspaces. Favourites of the browser stand before
-/// others, and are found by their tags as there.
+/// What has all the words of the search: panels whose names begin with it, then what has them in its name; commands, then
+/// parameters, then panels, then what can be used: materials, environments, views, files, workspaces. Favourites of the
+/// browser stand before others, and are found by their tags as there.
 fn found(
     ui: &Ui,
     search: &str,
@@ -136,7 +136,7 @@ fn found(
         ..Findable::new(command.label().to_owned(), Action::Do(*command))
     });
     let panes = Pane::ALL.into_iter().filter(|pane| *pane != Pane::Viewport);
-    let panes = panes.map(|pane| Findable::new(pane.command(), Action::Reveal(pane)));
+    let panes = panes.map(|pane| Findable::new(format!("Panel {}", pane.title()), Action::Reveal(pane)));
     let has_words = |text: &str| {
         let text = text.to_lowercase();
         words.iter().all(|word| text.contains(word))
@@ -150,6 +150,9 @@ fn found(
     found.extend(SETTINGS.iter().filter_map(|setting| of_parameter(setting, document)));
     found.extend(panes.chain(things.iter().cloned()));
     found.retain(|entry| has_words(&format!("{} {}", entry.label, entry.tags)));
-    found.sort_by_key(|entry| (!has_words(&entry.label), !entry.is_favourite));
+    // The name of a panel leads to it: commands that have it in their names act at once.
+    let begins = |pane: Pane| !search.is_empty() && pane.title().to_lowercase().starts_with(&search);
+    let is_panel = |entry: &Findable| matches!(entry.action, Action::Reveal(pane) if begins(pane));
+    found.sort_by_key(|entry| (!is_panel(entry), !has_words(&entry.label), !entry.is_favourite));
     found
 }

@@ -88,12 +88,16 @@ impl TurntableSheet {
         }
     }
 
-    /// How long all frames take at the speed of a render, and as noisy.
-    fn seconds(&self, progress: &Progress) -> f64 {
+    /// How long all frames take at the speed of a render, and as noisy; `None` where either is not known yet.
+    fn seconds(&self, progress: &Progress) -> Option<f64> {
         let pixels = self.size.map(f64::from);
-        let to_noise = progress.samples_to(self.noise).unwrap_or(f64::INFINITY);
+        let to_noise = match self.noise > 0.0 {
+            true => progress.samples_to(self.noise)?,
+            false => f64::INFINITY,
+        };
         let samples = to_noise.min(self.samples.into()).max(1.0);
-        f64::from(self.frames) * samples * pixels[0] * pixels[1] / progress.samples_per_second
+        let pixel_samples = f64::from(self.frames) * samples * pixels[0] * pixels[1];
+        Some(pixel_samples / progress.samples_per_second).filter(|seconds| seconds.is_finite())
     }
 
     /// The settings; true to begin, false to leave it. `progress`: of the render at present.
@@ -140,11 +144,11 @@ impl TurntableSheet {
             ui.add(field.margin(vec2(6.0, 4.0)))
         });
         let mut message = format!("A turn of {}", duration(f64::from(self.frames) / self.fps));
-        if progress.samples_per_second > 0.0 {
-            let seconds = self.seconds(progress);
-            message += &format!(", rendered in about {} at the present speed", duration(seconds));
-        }
-        widgets::note(ui, message + ".");
+        message += &match self.seconds(progress) {
+            Some(seconds) => format!(", rendered in about {} at the present speed.", duration(seconds)),
+            None => "; the render time is known once the image has an error.".to_owned(),
+        };
+        widgets::note(ui, message);
         ui.add_space(theme::GAP);
         let is_usable = !self.output.trim().is_empty();
         let buttons = |ui: &mut Ui| {

@@ -18,9 +18,8 @@ const HEIGHT: f32 = 76.0;
 pub struct DenoiserOffer {
     /// The share that is there.
     worker: Beside<(), Result<f32, String>>,
+    /// By the user, or because it was taken.
     is_declined: bool,
-    /// The outcome was taken note of.
-    is_taken: bool,
 }
 
 impl DenoiserOffer {
@@ -36,9 +35,14 @@ impl DenoiserOffer {
         let is_busy = self.worker.is_busy();
         let outcome = self.worker.latest().filter(|_| !is_busy);
         if let Some(Ok(_)) = outcome {
-            if !std::mem::replace(&mut self.is_taken, true) {
-                desk.document.view.denoise = Denoise::Auto;
-                desk.edits.note("Denoise", "view.denoise");
+            self.is_declined = true;
+            let is_saved = desk.edits.is_saved(desk.document);
+            desk.document.view.denoise = Denoise::Auto;
+            desk.edits.note("Denoise", "view.denoise");
+            if is_saved {
+                // No work that could be lost.
+                desk.edits.record(desk.document, false);
+                desk.edits.history.mark_saved();
             }
             return;
         }

@@ -25,7 +25,7 @@ pub static SETTINGS: LazyLock<Vec<Parameter<Document>>> = LazyLock::new(|| {
             .named("Background blur").group("Background").bar(0.0, 45.0).decimals(1).applies(|document| document.lighting.background == Background::Environment);
         "scene.unit" Display "Scene unit" "Metres per scene unit: for the power of lights, and for the f-number." field(unit_m, real(1e-6..=1e6, "m"))
             .group("Area lights").flag("scene-unit");
-        "lighting.light_groups" Sampling "Separate by group" "Sums the light of each group apart: the mix changes without rendering again, and .exr images get a layer of each group." toggle(lighting.light_groups)
+        "lighting.light_groups" Sampling "Split by group" "Sums the light of each group apart: the mix changes without rendering again, and .exr images get a layer of each group." toggle(lighting.light_groups)
             .named("Light groups").group("Light groups");
         "scene.ground" Geometry "Ground" "A surface under the model that catches its shadow." toggle(ground);
         "lighting.ground.kind" Geometry "Kind" "What the ground is." choice(GroundKind lighting.ground.kind)
@@ -97,7 +97,7 @@ pub static SETTINGS: LazyLock<Vec<Parameter<Document>>> = LazyLock::new(|| {
             .group("Stop when");
         "render.noise" Goal "Noise limit" "Stops at this estimated relative error (RMS pixel error over mean luminance); 0.01 is 1 %." field(render.noise, off(real(range::NOISE, ""), Value::Number(0.01)))
             .group("Stop when").percent();
-        "render.min_samples" Goal "Minimum samples" "Samples that each pixel has before its error is believed, so that small lights are not missed." field(render.min_samples, count(range::MIN_SAMPLES))
+        "render.min_samples" Goal "Min. samples" "Samples that each pixel has before its error is believed, so that small lights are not missed." field(render.min_samples, count(range::MIN_SAMPLES))
             .group("Stop when");
         "render.adaptive" Goal "Adaptive" "Adaptive or uniform sampling; auto: adaptive if there is a noise limit." field(render.adaptive, auto(Kind::Toggle))
             .named("Adaptive sampling").group("Stop when");

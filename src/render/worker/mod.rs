@@ -155,6 +155,9 @@ pub enum Level {
     Error,
 }
 
+/// The layers of an image, the progress of the render at that moment, and the divisor of width and height.
+pub type LayersMade = (Box<Layers>, Progress, u32);
+
 /// A report of the worker to the window.
 #[derive(Clone, Debug)]
 pub enum Event {
@@ -170,8 +173,6 @@ pub enum Event {
     OpenFailed(PathBuf, Level, String),
     /// A request was cancelled.
     Cancelled,
-    /// The result of [`Worker::make_layers`] for a file, with the progress of the render at that moment.
-    LayersMade(PathBuf, Box<Layers>, Progress),
 }
 
 #[derive(Clone, Debug)]
@@ -255,9 +256,13 @@ impl Worker {
         self.order(|state| state.load_environment(source));
     }
 
-    /// Makes the image's layers as soon as it has samples at full resolution; an [`Event`] returns them with the file name.
-    pub fn make_layers(&self, path: PathBuf) {
-        self.order(|state| state.requested_layers.push(path));
+    /// Makes the layers of the document submitted last, as soon as it has samples at full resolution, or where another one
+    /// replaces it before. The channel closes without them where nothing can be rendered.
+    pub fn make_layers(&self) -> Receiver<LayersMade> {
+        let (sender, made) = channel();
+        let revision = self.last_revision.load(Relaxed);
+        self.order(move |state| state.requested_layers.push((revision, sender)));
+        made
     }
 
     /// Carries later orders out once a channel is closed, or after 2 s.

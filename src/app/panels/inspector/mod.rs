@@ -86,7 +86,11 @@ fn values(ui: &mut Ui, desk: &Desk, picture: &Picture, [x, y]: [u32; 2]) {
             widgets::line(ui, text);
             ui.end_row();
         };
-        line("Pixel", format!("{x}, {y} of {} × {}", picture.width, picture.height));
+        // At full size, also while a smaller image is shown.
+        let render = &picture.document.render;
+        if let Some([x, y]) = desk.shared.look.pixel([render.width, render.height]) {
+            line("Pixel", format!("{x}, {y} of {} × {}", render.width, render.height));
+        }
         line("Linear", triple(shown));
         if picture.is_denoised() {
             let [r, g, b, _] = picture.samples.pixels.get(index).copied().unwrap_or_default();

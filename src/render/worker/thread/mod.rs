@@ -9,7 +9,9 @@ use std::{
     time::Instant,
 };
 
-use super::{Activity, Event, Level, Order, Scene, Shared, Snapshot, Submission, denoising::Denoising, stage::Stage};
+use super::{
+    Activity, Event, LayersMade, Level, Order, Scene, Shared, Snapshot, Submission, denoising::Denoising, stage::Stage,
+};
 use crate::{
     compile::Assets,
     document::{Change, Document, ViewSettings},
@@ -42,8 +44,8 @@ pub struct State<'a> {
     shared: &'a Shared,
     repaint: &'a dyn Fn(),
     assets: Assets,
-    /// Files for which layers have been requested.
-    pub requested_layers: Vec<PathBuf>,
+    /// Who waits for layers, with the revision that they are to be of.
+    pub requested_layers: Vec<(u64, Sender<LayersMade>)>,
     pub session: Option<Session>,
     snapshot: Snapshot,
     /// The latest submission, while the one before it must still be shown.
@@ -119,6 +121,7 @@ impl State<'_> {
             self.submitted.take()
         };
         if let Some(submission) = submitted {
+            self.make_layers(submission.revision);
             self.accept(submission);
         } else if self.stage.as_ref().is_some_and(Stage::is_settled) {
             self.settle();
@@ -128,7 +131,7 @@ impl State<'_> {
         } else {
             self.report_idle();
         }
-        self.make_layers();
+        self.make_layers(0);
         true
     }
 
@@ -146,14 +149,27 @@ impl State<'_> {
         }
     }
 
-    /// Makes the requested layers once there are samples at full resolution.
-    fn make_layers(&mut self) {
-        let is_full = self.stage.as_ref().is_some_and(|stage| stage.reduction == 1);
+    /// Whether layers are requested and there is not a sample to make them of.
+    fn lacks_samples(&self) -> bool {
         let has_none = |session: &Session| session.progress().samples_per_pixel == 0;
-        if self.requested_layers.is_empty() || !is_full || self.session.as_ref().is_none_or(has_none) {
+        !self.requested_layers.is_empty() && self.session.as_ref().is_none_or(has_none)
+    }
+
+    /// Makes the requested layers once there are samples at full resolution; those of what the `next` revision replaces, of
+    /// what there is.
+    fn make_layers(&mut self, next: u64) {
+        if self.lacks_samples() {
+            if next == 0 && !self.should_render() && !self.denoising.is_pending() {
+                self.requested_layers.clear();
+            }
             return;
         }
-        for path in std::mem::take(&mut self.requested_layers) {
+        let Some(stage) = &self.stage else { return };
+        let (reduction, revision) = (stage.reduction, stage.submission.revision);
+        let is_full = reduction == 1 || stage.is_final;
+        let is_due = |(asked, _): &mut (u64, _)| *asked < next || (is_full && *asked <= revision);
+        let due: Vec<_> = self.requested_layers.extract_if(.., is_due).collect();
+        for (_, made) in due {
             self.guarded(|state| {
                 let frame = state.frame.clone().filter(Frame::is_denoised);
                 let session = state.session()?;
@@ -164,8 +180,8 @@ impl State<'_> {
                     denoised,
                     ..session.layers()?
                 };
-                let made = Event::LayersMade(path, Box::new(layers), session.progress());
-                state.event(made);
+                // Nobody waits where the save was called off.
+                let _ = made.send((Box::new(layers), session.progress(), reduction));
                 Ok(())
             });
         }
@@ -465,7 +481,8 @@ impl State<'_> {
     /// Whether the stage must be shown before another submission is taken.
     fn keeps_stage(&self) -> bool {
         let is_in_work = self.should_render() || self.denoising.is_pending();
-        self.stage.as_ref().is_some_and(|stage| !stage.may_be_replaced()) && is_in_work
+        let is_needed = |stage: &Stage| !stage.may_be_replaced() || self.lacks_samples();
+        self.stage.as_ref().is_some_and(is_needed) && is_in_work
     }
 
     /// Time until there is something to do without an order.
@@ -478,12 +495,13 @@ impl State<'_> {
         self.stage.as_ref().map_or(Duration::MAX, Stage::wait_left)
     }
 
-    /// Whether to render a step; while paused, only until the first image.
+    /// Whether to render a step; while paused, only until the first image, and the first sample for requested layers.
     fn should_render(&self) -> bool {
         let (Some(stage), Some(session)) = (&self.stage, &self.session) else {
             return false;
         };
-        !session.progress().is_done && (!self.is_paused || !stage.is_shown) && !self.yields_to_denoiser()
+        let is_wanted = !self.is_paused || !stage.is_shown || self.lacks_samples();
+        !session.progress().is_done && is_wanted && !self.yields_to_denoiser()
     }
 
     /// Whether the engine waits for the denoiser. On the same cores each would take as long as both, and the user waits for
