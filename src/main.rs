@@ -18,6 +18,7 @@ macro_rules! pages {
 include!("book_pages.rs");
 
 fn main() -> ExitCode {
+    glossmith::render::memory::return_what_is_freed();
     let mut logger = env_logger::Builder::from_env(
         env_logger::Env::default().default_filter_or("warn,wgpu=error,wgpu_hal=off,naga=error"),
     );

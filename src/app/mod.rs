@@ -87,8 +87,17 @@ pub fn run(files: Vec<PathBuf>, engine: EngineChoice, pages: book::Pages) -> any
     };
     crate::render::priority::let_rendering_give_way();
     report_panics();
-    let create: eframe::AppCreator<'_> = Box::new(move |creation| Ok(Box::new(App::new(creation, options)?)));
-    eframe::run_native("Glossmith", settings::native_options(), create).map_err(|error| {
+    let open = |backends| {
+        let options = options.clone();
+        let create: eframe::AppCreator<'_> = Box::new(move |creation| Ok(Box::new(App::new(creation, options)?)));
+        eframe::run_native("Glossmith", settings::native_options(backends), create)
+    };
+    // OpenGL only as a last resort: its driver takes memory beside the one in use.
+    let opened = match open(wgpu::Backends::PRIMARY) {
+        Err(eframe::Error::Wgpu(_)) => open(wgpu::Backends::GL),
+        opened => opened,
+    };
+    opened.map_err(|error| {
         anyhow::anyhow!(
             "the window can't be opened: {error}. `glossmith render` works without one; a window needs a display and a \
              Vulkan or OpenGL driver (on Debian and Ubuntu: apt install mesa-vulkan-drivers)"

@@ -90,8 +90,10 @@ impl GpuAdapter {
 
     /// All adapters of a kind, real GPUs first.
     pub fn of_kind(kind: AdapterKind) -> Vec<Self> {
-        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
         let wanted = |backends| {
+            let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
+            descriptor.backends &= backends;
+            let instance = wgpu::Instance::new(descriptor);
             let found = block_on(instance.enumerate_adapters(backends))
                 .into_iter()
                 .map(|adapter| Self {
@@ -104,7 +106,7 @@ impl GpuAdapter {
             found.sort_by_key(|adapter| rank(&adapter.info));
             found
         };
-        // OpenGL only as a last resort: searching for it takes time and prints errors if it is missing.
+        // OpenGL only as a last resort: its driver takes memory and time, and prints errors if it is missing.
         let adapters = wanted(wgpu::Backends::PRIMARY);
         if adapters.is_empty() && kind != AdapterKind::Software {
             wanted(wgpu::Backends::GL)

@@ -18,6 +18,16 @@ const SOFTWARE_GPU_BYTES: u64 = 56;
 /// Bytes per triangle of instances on a GPU: measured on software Vulkan, with 7.7 million triangles.
 const INSTANCED_TRIANGLE_BYTES: u64 = 380;
 
+/// Has large allocations go back to the system as soon as they are freed, from now on. The C library would soon keep what
+/// has up to 32 MiB, in pieces that later images do not fit into.
+pub fn return_what_is_freed() {
+    #[cfg(all(target_os = "linux", target_env = "gnu"))]
+    // SAFETY: a setting of the allocator's, for all of its later allocations.
+    unsafe {
+        libc::mallopt(libc::M_MMAP_THRESHOLD, 1 << 20);
+    }
+}
+
 /// Refuses a job that needs more than `allowed` bytes, in words: its image, or beside it the instances of its model, which a
 /// GPU stores one by one.
 pub fn check(job: &Job, engine: &EngineInfo, allowed: u64) -> Result<(), String> {

@@ -31,7 +31,7 @@ const PIXELS_MAX: usize = 1 << 22;
 /// Filters kept besides the latest, and the most pixels of such a filter. The window alternates between reduced and full
 /// size, fast and high, and preparing a filter takes a tenth of the first image's time.
 const FILTERS_KEPT: usize = 3;
-const PIXELS_KEPT: usize = 1 << 19;
+const PIXELS_KEPT: usize = 1 << 17;
 
 /// A denoiser; it denoises one image at a time.
 pub struct Denoiser {
@@ -150,11 +150,16 @@ impl Denoiser {
         Ok(done)
     }
 
+    /// Frees what large images took: several hundred MB.
+    pub fn release_large(&mut self) {
+        self.filters.retain(|filter| filter.pixels() <= PIXELS_KEPT);
+    }
+
     fn filter(&mut self, size: [usize; 2], quality: c_int) -> Result<&mut Filter, LibraryError> {
         let filter = match self.filters.iter().position(|filter| filter.fits(size, quality)) {
             Some(place) => self.filters.remove(place),
             None => {
-                self.filters.retain(|filter| filter.pixels() <= PIXELS_KEPT);
+                self.release_large();
                 self.filters.truncate(FILTERS_KEPT);
                 Filter::new(&self.device, size, quality)?
             }

@@ -183,5 +183,7 @@ fn denoise(denoiser: &mut Option<Denoiser>, request: &Request) -> Result<Denoise
         None => Denoiser::open()?,
     };
     let denoiser = denoiser.insert(opened);
-    denoiser.denoise_cancellable(&request.noisy, request.mode, &request.cancel)
+    let denoised = denoiser.denoise_cancellable(&request.noisy, request.mode, &request.cancel);
+    denoiser.release_large();
+    denoised
 }

@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 use crate::{
     parallel,
     scene::inversion::{DRAW_BITS, Drawn, Share, drawn, find, shares},
-    scene::memory::in_large_pages,
+    scene::memory::room_in_large_pages,
 };
 
 /// Largest number of cells: 24 MiB of table. Finer cells gain nothing that a sample could show.
@@ -139,19 +139,18 @@ impl Distribution {
         let (of_cells, weights): (Vec<Vec<Share>>, Vec<f64>) = of_rows.into_iter().unzip();
         let rows = shares(&weights);
         let of_rows = probabilities(&rows);
-        let cells = parallel::map(height as usize, |row| {
-            let (shares, density) = (&of_cells[row], of_rows[row] / cell_solid_angle(row, width, height));
-            shares
-                .iter()
-                .zip(probabilities(shares))
-                .map(|(share, probability)| Cell {
-                    share: *share,
-                    density: (density * probability) as f32,
-                })
-                .collect::<Vec<_>>()
-        });
+        let mut cells = room_in_large_pages(columns * height as usize);
+        // Each row's shares are freed as its cells are made.
+        for (row, shares) in of_cells.into_iter().enumerate() {
+            let density = of_rows[row] / cell_solid_angle(row, width, height);
+            let with_probabilities = shares.iter().zip(probabilities(&shares));
+            cells.extend(with_probabilities.map(|(share, probability)| Cell {
+                share: *share,
+                density: (density * probability) as f32,
+            }));
+        }
         Self {
-            cells: in_large_pages(cells.concat()),
+            cells,
             rows,
             width,
             height,

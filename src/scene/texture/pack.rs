@@ -1,6 +1,6 @@
 //! Packing of texture maps for the integrators.
 
-use std::{path::Path, path::PathBuf, sync::Arc};
+use std::{borrow::Cow, path::Path, path::PathBuf, sync::Arc};
 
 use super::{
     CHANNEL_SHIFT, IS_BOX, IS_FINE, IS_SRGB, TextureRecord,
@@ -424,36 +424,36 @@ fn one_value(picture: &Texture, channel: usize) -> Option<f64> {
 }
 
 /// The used maps (others empty), with the largest halved until all fit.
-fn fitting(
+fn fitting<'a>(
     model: &Model,
-    (pictures, packed): (&[&Texture], &[Packed]),
+    (pictures, packed): (&[&'a Texture], &[Packed]),
     uses: &[Use],
     words_max: usize,
     warnings: &mut Vec<String>,
-) -> Vec<Texture> {
+) -> Vec<Cow<'a, Texture>> {
     let is_used = |index: usize| uses.iter().any(|used| used.picture == index);
     let is_color = |index: usize| {
         let mut of_it = uses.iter().filter(|used| used.picture == index);
         of_it.any(|used| used.record.flags & IS_SRGB != 0)
     };
     // A uniform map needs one texel.
-    let used = |(index, picture): (usize, &&Texture)| {
+    let used = |(index, picture): (usize, &&'a Texture)| {
         let is_one_value = packed[index].channels.iter().all(Option::is_some);
         let side = match is_one_value {
             _ if !is_used(index) => 0,
             true => 1,
-            false => return Texture::clone(picture),
+            false => return Cow::Borrowed(*picture),
         };
-        Texture {
+        Cow::Owned(Texture {
             name: picture.name.clone(),
             width: side,
             height: side,
             rgba8: picture.rgba8[..4 * side as usize].to_vec(),
             rgba16: picture.rgba16.iter().take(4 * side as usize).copied().collect(),
-        }
+        })
     };
-    let mut fitted: Vec<Texture> = pictures.iter().enumerate().map(used).collect();
-    let words = |picture: &Texture| match picture.rgba16.len() {
+    let mut fitted: Vec<Cow<'a, Texture>> = pictures.iter().enumerate().map(used).collect();
+    let words = |picture: &Cow<'_, Texture>| match picture.rgba16.len() {
         0 => picture.rgba8.len() / 4,
         channels => channels / 2,
     };
@@ -463,7 +463,7 @@ fn fitting(
         let Some(index) = largest.filter(|&index| fitted[index].rgba8.len() > 4) else {
             break;
         };
-        fitted[index] = halved(&fitted[index], is_color(index));
+        fitted[index] = Cow::Owned(halved(&fitted[index], is_color(index)));
     }
     for ((picture, original), whole) in fitted.iter().zip(pictures).zip(whole) {
         if words(picture) < whole {
