@@ -1,14 +1,16 @@
 //! Rays alone on one core: the processor's hierarchy under each instruction set against the GPU's hierarchy on the
-//! processor, in turns of one run; quoted in docs/PERFORMANCE.md.
+//! processor, and against Embree where it is installed, in turns of one run; quoted in docs/PERFORMANCE.md.
 //!
 //! `cargo bench --bench rays`. Millions of rays a second by the clock on the wall, the best of some turns: quiet machines
 //! only.
 
 mod compressed;
+mod embree;
 
 use std::{hint::black_box, time::Duration, time::Instant};
 
 use compressed::CompressedRays;
+use embree::Embree;
 use fearless_simd::Level;
 use glossmith::{
     instructions::Instructions,
@@ -40,8 +42,11 @@ fn main() {
     let sets = Instructions::ALL.iter().filter(|choice| **choice != Instructions::Auto);
     let sets: Vec<(&str, Level)> = sets.filter_map(|set| Some((set.label(), set.level()?))).collect();
     let heads: Vec<String> = sets.iter().map(|(name, _)| format!("{name} | ratio")).collect();
-    println!("| triangles | rays | compressed nodes | {} |", heads.join(" | "));
-    println!("|{}", " --- |".repeat(3 + 2 * sets.len()));
+    println!(
+        "| triangles | rays | compressed nodes | {} | Embree | Embree, robust |",
+        heads.join(" | ")
+    );
+    println!("|{}", " --- |".repeat(5 + 2 * sets.len()));
     for segments in [9, 28, 90] {
         let model = Model {
             mesh: teapot::mesh(segments),
@@ -51,11 +56,14 @@ fn main() {
         let geometry = Geometry::build(&model, true);
         let bytes = geometry.prepare();
         let seconds = begun.elapsed().as_secs_f64();
-        for kind in kinds(&geometry) {
-            compare(&geometry, &sets, &kind);
-            compare_packets(&geometry, &sets, &kind);
-        }
         let count = geometry.triangle_count();
+        let corners: Vec<[f32; 3]> = (0..count).flat_map(|triangle| geometry.corners(triangle)).collect();
+        let numbers: Vec<[u32; 3]> = (0..count as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        let embree = [false, true].map(|is_robust| Embree::of(&corners, &numbers, is_robust));
+        for kind in kinds(&geometry) {
+            compare(&geometry, &sets, &kind, &embree);
+            compare_packets(&geometry, &sets, &kind, &embree);
+        }
         println!(
             "| {count} | | built in {seconds:.2} s, {} bytes a triangle |",
             bytes / count
@@ -63,10 +71,12 @@ fn main() {
     }
 }
 
-fn compare(geometry: &Geometry, sets: &[(&str, Level)], kind: &Kind) {
+fn compare(geometry: &Geometry, sets: &[(&str, Level)], kind: &Kind, embree: &[Option<Embree>; 2]) {
     let compressed = CompressedRays::new(&geometry.model);
     let mut best = vec![0.0_f64; 1 + sets.len()];
+    let mut best_embree = [0.0_f64; 2];
     for _ in 0..TURNS {
+        improve(&mut best_embree, kind, embree, false);
         best[0] = best[0].max(rate(kind, |(origin, direction)| match kind.any {
             true => compressed.trace::<true>(origin, direction, f32::MAX).is_some(),
             false => compressed.trace::<false>(origin, direction, f32::MAX).is_some(),
@@ -82,22 +92,25 @@ fn compare(geometry: &Geometry, sets: &[(&str, Level)], kind: &Kind) {
         .iter()
         .map(|rate| format!("{:.2} | {:.2}", rate / 1e6, rate / best[0]));
     println!(
-        "| {} | {} | {:.2} | {} |",
+        "| {} | {} | {:.2} | {} | {:.2} | {:.2} |",
         geometry.triangle_count(),
         kind.name,
         best[0] / 1e6,
-        rates.collect::<Vec<_>>().join(" | ")
+        rates.collect::<Vec<_>>().join(" | "),
+        best_embree[0] / 1e6,
+        best_embree[1] / 1e6
     );
 }
 
 /// The same rays sixteen at a time, against one by one.
-fn compare_packets(geometry: &Geometry, sets: &[(&str, Level)], kind: &Kind) {
+fn compare_packets(geometry: &Geometry, sets: &[(&str, Level)], kind: &Kind, embree: &[Option<Embree>; 2]) {
     let packet = |rays: &[Ray]| Packet::of(rays.iter().map(|&(origin, direction)| (origin, direction, f32::MAX)));
     let packets: Vec<Packet> = kind.rays.chunks(PACKET).map(packet).collect();
-    let mut cells = Vec::new();
+    let (mut cells, mut best_embree) = (Vec::new(), [0.0_f64; 2]);
     for (_, level) in sets {
         let (mut alone, mut together) = (0.0_f64, 0.0_f64);
         for _ in 0..TURNS {
+            improve(&mut best_embree, kind, embree, true);
             alone = alone.max(rate(kind, |(origin, direction)| match kind.any {
                 true => geometry.occluded_by(*level, origin, direction, f32::MAX),
                 false => geometry.intersect_by(*level, origin, direction, f32::MAX).is_some(),
@@ -118,7 +131,26 @@ fn compare_packets(geometry: &Geometry, sets: &[(&str, Level)], kind: &Kind) {
         cells.push(format!("{:.2} | {:.2}", together / 1e6, together / alone));
     }
     let name = format!("{} in packets, against alone", kind.name);
-    println!("| {} | {name} | | {} |", geometry.triangle_count(), cells.join(" | "));
+    let count = geometry.triangle_count();
+    println!(
+        "| {count} | {name} | | {} | {:.2} | {:.2} |",
+        cells.join(" | "),
+        best_embree[0] / 1e6,
+        best_embree[1] / 1e6
+    );
+}
+
+/// Raises the best rates of Embree; they stay 0 where it is not installed.
+fn improve(best: &mut [f64; 2], kind: &Kind, embree: &[Option<Embree>; 2], in_packets: bool) {
+    for (best, embree) in best.iter_mut().zip(embree) {
+        let Some(embree) = embree else { continue };
+        let (begun, mut rays) = (Instant::now(), 0);
+        while begun.elapsed() < TURN {
+            black_box(embree.hits(&kind.rays, kind.any, in_packets, kind.name == "camera"));
+            rays += kind.rays.len();
+        }
+        *best = best.max(rays as f64 / begun.elapsed().as_secs_f64());
+    }
 }
 
 /// Rays a second.

@@ -426,7 +426,8 @@ impl App {
         let is_changing = is_dragging(ctx) || self.edits.is_in_flow();
         self.shared.pictures.hold(!has_picture || is_changing);
         self.shared.queue.give_way(is_changing);
-        if is_changing {
+        // The release of a button is a frame of its own.
+        if is_changing && !is_dragging(ctx) {
             ctx.request_repaint_after(MOVING);
         }
     }

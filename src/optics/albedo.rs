@@ -66,16 +66,17 @@ pub fn albedo_number<T: Real>(tables: &[f32], albedo_table: u32, number: usize, 
     left + (right - left) * beyond
 }
 
-/// The view's cosine at a node of a table: [`albedo_place`] backwards.
-fn node_cosine(node: usize, eta: f64) -> f64 {
+/// The view's cosine at a node of a table, or between two: [`albedo_place`] backwards.
+fn node_cosine(node: f64, eta: f64) -> f64 {
+    let [last, total] = [ALBEDO_NODES - 1, TOTAL_NODES].map(|count| count as f64);
     let critical_square = (1.0 - eta * eta).max(0.0);
     if critical_square == 0.0 {
-        return node as f64 / (ALBEDO_NODES as f64 - 1.0);
+        return node / last;
     }
-    if node < TOTAL_NODES {
-        return critical_square.sqrt() * node as f64 / TOTAL_NODES as f64;
+    if node < total {
+        return critical_square.sqrt() * node / total;
     }
-    let refracted = (node - TOTAL_NODES) as f64 / (ALBEDO_NODES - 1 - TOTAL_NODES) as f64;
+    let refracted = (node - total) / (last - total);
     (critical_square + (eta * refracted).powi(2)).sqrt().min(1.0)
 }
 
@@ -128,7 +129,7 @@ pub fn node_turn(step: usize, anisotropy: f64) -> f64 {
 /// Mean over a lobe, at a table node, of its weight times `factors` of the half vector's cosine; of a stretched lobe at this
 /// turn of the view, or over all.
 fn node_means(
-    node: usize,
+    node: f64,
     turn: Option<f64>,
     is_inside: bool,
     material: &Material<f64>,
@@ -192,18 +193,37 @@ fn table_of(
     } else {
         ROUGHNESS_NODES
     };
+    // Middles between the nodes, too, where a film makes fringes.
+    let parts = if material.has_film == 1 { 2 } else { 1 };
+    let places = parts * (ALBEDO_NODES - 1) + 1;
     let means = |index: usize| {
         let mut shape = material.shape(tables);
-        let step = index / ALBEDO_NODES;
+        let step = index / places;
         let turn = material.is_over_azimuth().then(|| node_turn(step, shape.anisotropy));
         if steps > 1 && turn.is_none() {
             shape.roughness = step as f64 / (ROUGHNESS_NODES - 1) as f64;
         }
-        let node = index % ALBEDO_NODES;
+        let node = (index % places) as f64 / parts as f64;
         node_means(node, turn, is_inside, material, &shape, samples, &factors)
     };
-    let nodes = parallel::map(steps * ALBEDO_NODES, means).into_flattened();
-    nodes.into_iter().map(|x| x as f32).collect()
+    let means = parallel::map(steps * places, means);
+    let rows = means.chunks(places).flat_map(|row| raised_nodes(row, parts));
+    rows.flatten().map(|x| x as f32).collect()
+}
+
+/// The nodes of a row of means at every part of a node. Where a middle lies above the line between two nodes, both are
+/// raised: what the line leaves out is given to the layers below, which would make light.
+fn raised_nodes(row: &[[f64; 4]], parts: usize) -> impl Iterator<Item = [f64; 4]> {
+    let above = move |middle: usize, number: usize| match row.get(middle.wrapping_sub(1)..middle.saturating_add(2)) {
+        Some([left, there, right]) if parts == 2 => there[number] - 0.5 * (left[number] + right[number]),
+        _ => 0.0,
+    };
+    (0..row.len()).step_by(parts).map(move |node| {
+        std::array::from_fn(|number| {
+            let rise = above(node.wrapping_sub(1), number).max(above(node + 1, number));
+            row[node][number] + rise.max(0.0)
+        })
+    })
 }
 
 /// Basis of the Fresnel factor for any metalness and base colour: the exact dielectric, Schlick's two terms and the

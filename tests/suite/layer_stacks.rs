@@ -149,10 +149,11 @@ fn thick_films_keep_all_light() {
                 "0 thin_film.thickness=2",
                 "0 thin_film.thickness=10",
                 "0.3 thin_film.thickness=10",
+                "0 thin_film.ior=1.4 thin_film.thickness=0.5 specular.ior=1.0001",
             ] {
                 let own = format!("specular.lobe={lobe} thin_film.weight=1 thin_film.ior=2 specular.roughness={film}");
                 let filmed = material(&format!("{below} {own}"));
-                for cosine in [1.0, 0.6, 0.3, 0.1] {
+                for cosine in [1.0, 0.6, 0.3, 0.148, 0.1] {
                     let found = sums(&albedo(&filmed, cosine, 1 << 14));
                     assert!(
                         found.iter().all(|sum| (sum - 1.0).abs() < 0.008),

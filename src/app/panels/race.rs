@@ -260,7 +260,8 @@ fn pictures(ui: &mut Ui, desk: &Desk, state: &mut RacePanel, race: &Arc<Race>) {
     let pictured = pictured.unwrap_or_else(|| pictured_now(ui, race, &desk.document.view));
     let pictured = state.pictured.insert(pictured);
     let textures = &pictured.textures[usize::from(state.shows_equal_error)];
-    ui.horizontal_wrapped(|ui| {
+    let rows = Layout::left_to_right(Align::TOP).with_main_wrap(true);
+    ui.with_layout(rows, |ui| {
         for (runner, texture) in std::iter::zip(&race.runners, textures) {
             // In rows: of a place without a size it is not known that the next row is to begin.
             ui.allocate_ui_with_layout(Vec2::splat(THUMBNAIL), Layout::top_down(Align::Min), |ui| {

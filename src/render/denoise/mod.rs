@@ -31,7 +31,7 @@ const PIXELS_MAX: usize = 1 << 22;
 /// Filters kept besides the latest, and the most pixels of such a filter. The window alternates between reduced and full
 /// size, fast and high, and preparing a filter takes a tenth of the first image's time.
 const FILTERS_KEPT: usize = 3;
-const PIXELS_KEPT: usize = 1 << 17;
+const PIXELS_KEPT: usize = 1 << 19;
 
 /// A denoiser; it denoises one image at a time.
 pub struct Denoiser {

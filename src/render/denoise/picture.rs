@@ -58,6 +58,20 @@ impl Noisy {
         }
     }
 
+    /// The same in one piece instead of two halves: denoised in half the time, without an error estimate.
+    pub fn as_one(self) -> Self {
+        let [albedo, normal] = self.guides();
+        let color = |pixel: &usize| {
+            let [red, green, blue, _] = self.image.pixels[*pixel];
+            [red, green, blue].map(|x| x.max(0.0))
+        };
+        let color = self.pixels.iter().map(color).collect();
+        Self {
+            halves: [Some(NoisyHalf { color, albedo, normal }), None],
+            ..self
+        }
+    }
+
     /// Albedo and normal guides, averaged over the halves present.
     pub fn guides(&self) -> [Colors; 2] {
         let halves: Vec<&NoisyHalf> = self.halves.iter().flatten().collect();

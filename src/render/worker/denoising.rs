@@ -15,6 +15,10 @@ use crate::{
 
 /// Factor by which samples grow from one denoised image to the next.
 const GROWTH: u32 = 2;
+/// Render time in seconds up to which images are denoised as one.
+const AS_ONE_S: f64 = 0.5;
+/// Time of a first image's samples, relative to that of its denoising.
+const FIRST_SHARE: f64 = 0.6;
 /// Render time in seconds up to which denoising is not limited, and its share of the time from then on.
 const EARLY_S: f64 = 1.0;
 const TIME_SHARE: f64 = 0.2;
@@ -54,6 +58,10 @@ pub struct Denoising {
     late_seconds: f64,
     /// Time of the latest result, in seconds.
     latest_seconds: f64,
+    /// Least time in seconds for each pixel of an image denoised as one; `None` before the first.
+    as_one_seconds: Option<f64>,
+    /// Whether an image of this render has an error estimate.
+    has_error: bool,
     /// Error message, if nothing can be denoised.
     failure: Option<String>,
 }
@@ -73,6 +81,8 @@ impl Denoising {
             cancel: Arc::default(),
             late_seconds: 0.0,
             latest_seconds: 0.0,
+            as_one_seconds: None,
+            has_error: false,
         }
     }
 
@@ -82,6 +92,7 @@ impl Denoising {
         self.is_pending = false;
         self.requested_samples = 0;
         self.late_seconds = 0.0;
+        self.has_error = false;
     }
 
     /// Whether the document's render is shown denoised at this progress.
@@ -90,24 +101,31 @@ impl Denoising {
         document.view.denoise != Denoise::Off && self.failure.is_none() && is_time
     }
 
-    /// Whether a request is exempt from the time share: early in a render, and the first one with two halves, because only
-    /// two halves give an error estimate.
+    /// Whether a request is exempt from the time share: early in a render, and the first one with an error estimate.
     fn is_early(&self, progress: &Progress) -> bool {
-        progress.render_seconds < EARLY_S || self.requested_samples < 2
+        progress.render_seconds < EARLY_S || !self.has_error
     }
 
-    /// Whether a request is due: the first one, then at twice the samples of the one before within the time share, and the
-    /// last one.
-    pub fn is_due(&self, progress: &Progress) -> bool {
+    /// Whether the next request is denoised as one and fast: better and sooner than two halves, but without an error.
+    pub fn is_as_one(&self, progress: &Progress) -> bool {
+        !progress.is_done && (self.requested_samples == 0 || progress.render_seconds < AS_ONE_S)
+    }
+
+    /// Whether a request is due. The first one is at once, or if it `may_wait` after [`FIRST_SHARE`] of the time that denoising
+    /// will take: more samples are worth more than an earlier image. Then at twice the samples of the one before within the time share,
+    /// and the last one.
+    pub fn is_due(&self, progress: &Progress, pixels: f64, may_wait: bool) -> bool {
         let samples = progress.samples_per_pixel;
         if samples <= self.requested_samples {
             return false;
         }
+        if self.requested_samples == 0 && !progress.is_done {
+            let wait = FIRST_SHARE * self.as_one_seconds.filter(|_| may_wait).unwrap_or(0.0) * pixels;
+            return progress.render_seconds >= wait.min(AS_ONE_S);
+        }
         let spent_and_next = self.late_seconds + self.latest_seconds;
         let is_cheap = self.is_early(progress) || spent_and_next <= TIME_SHARE * (progress.render_seconds - EARLY_S);
-        progress.is_done
-            || self.requested_samples == 0
-            || (!self.is_pending && is_cheap && samples >= GROWTH * self.requested_samples)
+        progress.is_done || (!self.is_pending && is_cheap && samples >= GROWTH * self.requested_samples)
     }
 
     /// Whether a request has no result yet.
@@ -148,6 +166,11 @@ impl Denoising {
         self.is_pending &= outcome.frame.samples_per_pixel != self.requested_samples;
         if let Ok(denoised) = &outcome.denoised {
             self.latest_seconds = denoised.seconds;
+            self.has_error |= denoised.error.is_some();
+            if denoised.error.is_none() {
+                let seconds = denoised.seconds / denoised.image.pixels.len() as f64;
+                self.as_one_seconds = Some(self.as_one_seconds.map_or(seconds, |least| least.min(seconds)));
+            }
             if !outcome.is_early {
                 self.late_seconds += denoised.seconds;
             }
@@ -184,6 +207,8 @@ fn denoise(denoiser: &mut Option<Denoiser>, request: &Request) -> Result<Denoise
     };
     let denoiser = denoiser.insert(opened);
     let denoised = denoiser.denoise_cancellable(&request.noisy, request.mode, &request.cancel);
-    denoiser.release_large();
+    if !request.is_early {
+        denoiser.release_large();
+    }
     denoised
 }

@@ -209,31 +209,40 @@ impl<S: Simd> BoxRay<S> {
             if hit_bits == 0 {
                 return None;
             }
-            let mut hit_bits = Children {
-                children: hit_bits,
-                near: near.to_array(),
+            // What is visited later is prefetched, because memory latency dominates traversal.
+            let near = near.to_array();
+            let mut left = hit_bits;
+            let mut take = || {
+                let child = (left.trailing_zeros() % WIDTH as u32) as usize;
+                left &= left - 1;
+                (StackEntry::new(near[child], node.children[child]), left == 0)
             };
-            let first = hit_bits.take(wide, node);
-            if hit_bits.children == 0 {
+            let (first, is_all) = take();
+            if is_all {
                 return Some(first);
             }
-            let second = hit_bits.take(wide, node);
+            let (second, is_all) = take();
             let (nearest, farther) = if second.0 < first.0 {
                 (second, first)
             } else {
                 (first, second)
             };
-            if hit_bits.children == 0 {
+            wide.prefetch(farther.child());
+            if is_all {
                 stack.push(farther);
                 return Some(nearest);
             }
             let base = stack.height;
             stack.push(farther);
             stack.push(nearest);
-            while hit_bits.children != 0 {
-                stack.insert(hit_bits.take(wide, node), base);
+            loop {
+                let (entry, is_all) = take();
+                wide.prefetch(entry.child());
+                stack.insert(entry, base);
+                if is_all {
+                    return stack.pop();
+                }
             }
-            stack.pop()
         }
 
         /// Bit mask of the boxes `[low, high][axis][box]` that are hit before `t_max`, and their entry distances. Boxes of NaN are
@@ -268,24 +277,6 @@ impl<S: Simd> BoxRay<S> {
             f32x8::load_array_ref(simd, &node.sides[axis][(self.near[axis] ^ 1) & 1]) * self.inverse[axis]
                 + self.far_offset[axis]
         }
-    }
-}
-
-/// The hit children of a node.
-struct Children {
-    /// Bit mask of the children not taken yet.
-    children: u32,
-    /// Entry distance of each child's box.
-    near: [f32; WIDTH],
-}
-
-impl Children {
-    /// Takes the next child and prefetches it, because memory latency dominates traversal.
-    fn take(&mut self, wide: &Wide, node: &Node) -> StackEntry {
-        let child = (self.children.trailing_zeros() % WIDTH as u32) as usize;
-        self.children &= self.children - 1;
-        wide.prefetch(node.children[child]);
-        StackEntry::new(self.near[child], node.children[child])
     }
 }
 

@@ -447,7 +447,9 @@ impl State<'_> {
             .clamp(PUBLISH_INTERVAL[0], PUBLISH_INTERVAL[1])
             .max(PUBLISH_COST * self.publish_cost);
         let is_due = if self.denoising.shows(&stage.submission.document, &progress) {
-            self.denoising.is_due(&progress)
+            let render = &stage.submission.document.render;
+            let pixels = f64::from(render.width) * f64::from(render.height) / f64::from(stage.reduction.pow(2));
+            self.denoising.is_due(&progress, pixels, stage.is_shown)
         } else {
             let is_urgent = self.published_samples == 0 || progress.is_done;
             progress.samples_per_pixel > self.published_samples && (is_urgent || age >= interval)

@@ -35,14 +35,13 @@ impl State<'_> {
         }
         let reduction = stage.reduction;
         if self.denoising.shows(&stage.submission.document, &progress) {
-            // The first image after an edit uses the fast filter; later ones use the requested quality.
-            let is_first_image = progress.samples_per_pixel < 2 && !progress.is_done;
-            let how = match stage.submission.document.view.denoise {
-                _ if is_first_image => Denoise::Fast,
-                chosen => chosen,
-            };
+            let chosen = stage.submission.document.view.denoise;
+            let mut noisy = self.session()?.noisy()?;
+            let mut how = chosen;
+            if self.denoising.is_as_one(&progress) {
+                (noisy, how) = (noisy.as_one(), Denoise::Fast);
+            }
             let session = self.session()?;
-            let noisy = session.noisy()?;
             let frame = session.frame_of(noisy.image.clone(), reduction);
             self.denoising.request(noisy, frame, how, &progress);
             return Ok(());
