@@ -418,9 +418,10 @@ impl<T: Real> Side<T> {
             film_passed(&self.terms, cosine, None)
         }
 
-        /// The share that a facet reflects, under a film that lets this much more through.
+        /// The share that a facet reflects, under a film that lets this much more through; within [0, 1], as the lobes have it.
         fn reflected(&self, cosine: T, film: Vec3<T>) -> Vec3<T> {
-            (Vec3::splat(fresnel_dielectric(cosine, self.terms.ior)) - film) * self.terms.weight
+            let share = (Vec3::splat(fresnel_dielectric(cosine, self.terms.ior)) - film) * self.terms.weight;
+            share.map(|share| share.clamp(T::ZERO, T::ONE))
         }
 
         /// The share that a facet with the normal `h` refracts, as far as it is seen behind.
