@@ -250,9 +250,10 @@ fn with_all_guides(film: &Film) -> (Film, Vec<[f64; 2]>) {
     let mut film = film.clone();
     let counts = (0..film.pixel_count()).map(|pixel| [film.guide_samples(pixel).iter().sum(); 2]);
     let counts = counts.collect();
-    for [even, odd] in &mut film.guides {
-        even.add(odd);
-        *odd = *even;
+    for halves in film.guides.chunks_exact_mut(2) {
+        let odd = halves[1];
+        halves[0].add(&odd);
+        halves[1] = halves[0];
     }
     (film, counts)
 }

@@ -1,6 +1,6 @@
 //! `glossmith render`: a document from arguments, an image in a file.
 
-use std::{borrow::Cow, fmt, io::IsTerminal, path::PathBuf, time::Duration, time::Instant};
+use std::{fmt, io::IsTerminal, path::PathBuf, time::Duration, time::Instant};
 
 use anyhow::bail;
 use clap::Args;
@@ -21,7 +21,7 @@ use crate::{
         denoise::Denoised,
         display::display,
         light_layers::LightLayer,
-        output::{self, Format, Rendered},
+        output::{self, Format, Layers, Rendered},
         to_end,
     },
     scene::Loading,
@@ -139,6 +139,9 @@ fn render(mut session: Session, document: &Document, begun: Instant, targets: &R
     } else if targets.keep_sums {
         session.keep_guides("sums of the image are kept");
     }
+    if !targets.keep_sums {
+        session.guides = 1;
+    }
     let waiting = Bar::waiting(session.assets().loading())?;
     to_end::submit(&mut session, engine, document)?;
     drop(waiting);
@@ -151,21 +154,25 @@ fn render(mut session: Session, document: &Document, begun: Instant, targets: &R
         return Err(anyhow::Error::new(signal).context("nothing was rendered yet, and nothing is written"));
     }
     let lights = session.light_layers()?;
-    let layers = targets.aovs.then(|| session.layers()).transpose()?;
-    let image = match &layers {
-        Some(layers) => Cow::Borrowed(&layers.image),
-        None => Cow::Owned(session.image()?),
-    };
     let sums = targets.keep_sums.then(|| session.kept_film()).transpose()?;
     let film = session.film()?;
     let (cut, dropped) = (film.cut_share(), film.dropped());
     let mut report = || json_report(&mut session, document, setup_seconds, progress, targets.aovs);
     let report = targets.report.as_ref().map(|_| report()).transpose()?;
-    // Its sums are not needed while the image is written.
-    drop(session);
-    let rendered = rendered(&image, denoised.as_ref(), &lights);
+    // The session's sums are not needed while the image is written.
+    let layers = if targets.aovs {
+        session.into_layers()?
+    } else {
+        let image = session.image()?;
+        drop(session);
+        Layers {
+            image,
+            ..Layers::default()
+        }
+    };
+    let rendered = rendered(&layers.image, denoised.as_ref(), &lights);
     let rendered = Rendered {
-        layers: layers.as_ref(),
+        layers: targets.aovs.then_some(&layers),
         sums: sums.as_ref(),
         ..rendered
     };
@@ -357,6 +364,7 @@ fn json_report(
     let film = session.film()?;
     let seconds = progress.render_seconds.max(1e-9);
     let samples = film.samples() + film.dropped();
+    let luminance: f64 = (0..film.pixel_count()).map(|pixel| film.luminance_of(pixel)).sum();
     let rays = film.total_rays();
     Ok(serde_json::json!({
         "version": env!("CARGO_PKG_VERSION"),
@@ -368,7 +376,7 @@ fn json_report(
         "height": film.height,
         "samples_per_pixel": progress.samples_per_pixel,
         "mean_samples_per_pixel": progress.mean_samples,
-        "mean_luminance": film.luminance().iter().sum::<f64>() / film.pixel_count() as f64,
+        "mean_luminance": luminance / film.pixel_count() as f64,
         "noise": progress.noise.map(|noise| noise.relative),
         "noise_low": progress.noise.map(|noise| noise.low),
         "noise_high": progress.noise.map(|noise| noise.high),

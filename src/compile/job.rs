@@ -206,6 +206,7 @@ impl Compiler {
             roulette_floor: roulette_floor(&materials),
             least_reflections,
             light_groups: document.light_groups().len() as u32,
+            guides: 2,
             firefly_clamp: document.render.firefly_clamp.map_or(f64::INFINITY, f64::from),
             sequence: document.render.sequence,
             strategy: document.render.strategy,

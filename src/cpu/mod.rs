@@ -8,6 +8,7 @@ pub mod recorder;
 mod tile_sums;
 
 use std::{
+    ops::Range,
     sync::{Arc, Mutex, atomic::AtomicUsize, atomic::Ordering},
     time::Duration,
     time::Instant,
@@ -26,10 +27,10 @@ use crate::{
     panics::lock,
     parallel,
 };
-use integrator::{Integrator, PATHS, Tile, WAVE_SAMPLES, Wave};
+use integrator::{Integrator, PATHS, Tiles, WAVE_SAMPLES, Wave};
 use tile_sums::TileSums;
 
-/// The CPU engine. Its threads render one tile each at a time.
+/// The CPU engine. Its threads render one tile each at a time, or a run of neighbours with few samples.
 #[derive(Default)]
 pub struct CpuEngine {
     job: Option<Arc<Job>>,
@@ -41,6 +42,8 @@ pub struct CpuEngine {
 
 /// Longest pass with more samples per pixel than a wave has.
 const PASS: Duration = Duration::from_millis(30);
+/// Runs of tiles per thread at least, so that no thread waits long for another's last.
+const RUNS_PER_THREAD: usize = 8;
 /// Tiles per slice: enough that threads seldom wait for each other, and few beside what a step renders.
 const LISTED_TILES: usize = 4096;
 
@@ -119,8 +122,8 @@ impl CpuEngine {
     }
 
     /// Renders tiles until the time is up, at least one. Returns their number. Each thread has its own wave, made on first
-    /// use, and takes the next tile when it is done with one. Background tiles take a fifth of the time of others, so the
-    /// number cannot be planned. Each tile is copied out of the film and back, so that no two threads write to the same
+    /// use, and takes the next run of tiles when it is done with one. Background tiles take a fifth of the time of others, so
+    /// the number cannot be planned. Each run is copied out of the film and back, so that no two threads write to the same
     /// memory; that costs a thousandth of the time.
     fn render<T: Single>(
         &mut self,
@@ -130,22 +133,26 @@ impl CpuEngine {
         time: Duration,
     ) -> usize {
         let grid = self.schedule.grid();
+        let runs = runs(grid, works, works.len() / (RUNS_PER_THREAD * waves.len()));
         let film = Mutex::new(&mut self.film);
         let film = || lock(&film);
         let (start, taken) = (Instant::now(), AtomicUsize::new(0));
         parallel::for_rows(waves, 1, |_, wave| {
-            while let Some(work) = works.get(taken.fetch_add(1, Ordering::Relaxed)) {
+            while let Some(run) = runs.get(taken.fetch_add(1, Ordering::Relaxed)) {
                 let wave = wave[0].get_or_insert_with(|| Wave::new(PATHS, T::LANES, integrator.sequence()));
-                let origin = grid.origin(work.tile);
-                let mut sums = film().part(origin, grid.size(work.tile));
-                render_tile(integrator, wave, origin, work, &mut sums);
+                let (first, last) = (&works[run.start], &works[run.end - 1]);
+                let origin = grid.origin(first.tile);
+                let [width, height] = grid.size(last.tile);
+                let mut sums = film().part(origin, [grid.origin(last.tile)[0] - origin[0] + width, height]);
+                render_tiles(integrator, wave, origin, first, &mut sums);
                 film().place(origin, &sums);
                 if start.elapsed() >= time {
                     break;
                 }
             }
         });
-        taken.into_inner().min(works.len())
+        let last = taken.into_inner().min(runs.len()).checked_sub(1);
+        last.map_or(0, |last| runs[last].end)
     }
 
     pub fn film(&self) -> &Film {
@@ -168,17 +175,37 @@ impl CpuEngine {
     }
 }
 
-/// Adds a tile's samples to its sums.
-fn render_tile<T: Single>(
+/// Works in runs of at most `most` neighbouring tiles with the same samples: together they fill a wave.
+fn runs(grid: TileGrid, works: &[Work], most: usize) -> Vec<Range<usize>> {
+    let mut runs: Vec<Range<usize>> = Vec::new();
+    for (index, work) in works.iter().enumerate() {
+        let most = most.min((WAVE_SAMPLES / work.count.max(1)) as usize);
+        let follows = |before: &Work| {
+            let next = Work {
+                tile: before.tile + 1,
+                ..*before
+            };
+            next == *work && grid.origin(before.tile)[1] == grid.origin(work.tile)[1]
+        };
+        match runs.last_mut() {
+            Some(run) if run.len() < most && follows(&works[index - 1]) => run.end += 1,
+            _ => runs.push(index..index + 1),
+        }
+    }
+    runs
+}
+
+/// Adds the samples of a run of tiles to their sums.
+fn render_tiles<T: Single>(
     integrator: &Integrator<'_, T>,
     wave: &mut Wave,
     origin: [u32; 2],
     work: &Work,
     sums: &mut Film,
 ) {
-    let tile = Tile::new(origin, [sums.width, sums.height]);
-    let mut sums = TileSums::of(sums, &tile);
-    integrator.trace_tile(&tile, wave, [work.first_sample, work.count], |samples, results| {
+    let tiles = Tiles::new(origin, [sums.width, sums.height]);
+    let mut sums = TileSums::of(sums, &tiles);
+    integrator.trace_tiles(&tiles, wave, [work.first_sample, work.count], |samples, results| {
         sums.add::<T>(samples, results);
     });
     sums.finish();

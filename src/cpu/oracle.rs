@@ -3,7 +3,7 @@
 
 use fearless_simd::Level;
 
-use super::integrator::{Integrator, PATHS, PathResult, Tile, Wave};
+use super::integrator::{Integrator, PATHS, PathResult, Tiles, Wave};
 use super::recorder::Event;
 use crate::{
     job::Job,
@@ -29,7 +29,7 @@ impl<'a> PathTracer<'a> {
     /// The result of one path, a wave of its own, whose events are appended to a list.
     pub fn record(&self, pixel: [u32; 2], sample: u32, events: &mut Vec<Event>) -> PathResult {
         let mut wave = Wave::<Vec<Event>>::new(PACKET, 1, self.0.sequence());
-        self.0.trace_wave(&Tile::new(pixel, [1; 2]), [sample, 1], &mut wave);
+        self.0.trace_wave(&Tiles::new(pixel, [1; 2]), [sample, 1], &mut wave);
         events.append(&mut wave.paths.outputs[0].recorder);
         self.0.result(&wave.paths, 0)
     }
@@ -63,13 +63,13 @@ impl InLanes for TraceTile<'_> {
         let TileSamples { origin, size, samples } = self.tile;
         let pixels = (size[0] * size[1]) as usize;
         let mut results_of = vec![PathResult::default(); pixels * samples[1] as usize];
-        let tile = Tile::new(origin, size);
+        let tiles = Tiles::new(origin, size);
         let integrator = Integrator::<T>::new(self.job);
         let mut wave = Wave::new(PATHS, T::LANES, integrator.sequence());
-        integrator.trace_tile(&tile, &mut wave, samples, |[first, count], results| {
+        integrator.trace_tiles(&tiles, &mut wave, samples, |[first, count], results| {
             for sample in 0..count {
                 let row = (first + sample - samples[0]) as usize * pixels;
-                for block in tile.blocks() {
+                for block in tiles.blocks() {
                     let path = block.path([sample, count]);
                     for ([x, y], path) in block.places.iter().zip(path..) {
                         results_of[row + (y * size[0] + x) as usize] = results.get(path);

@@ -1,27 +1,27 @@
-//! Sums of a tile's pixels while samples arrive, as structure of arrays per pixel block: a block's samples are added in
+//! Sums of tiles' pixels while samples arrive, as structure of arrays per pixel block: a block's samples are added in
 //! SIMD.
 
-use super::integrator::{BLOCK_PIXELS, Results, Tile, is_sound};
+use super::integrator::{BLOCK_PIXELS, Results, Tiles, is_sound};
 use crate::job::{film::Film, film::HalfSums, guides::GUIDE_SAMPLES};
 use crate::optics::prelude::*;
 
-/// A tile's sums and its part of the film.
+/// The sums of tiles and their part of the film.
 pub struct TileSums<'a> {
-    tile: &'a Tile,
+    tiles: &'a Tiles,
     film: &'a mut Film,
     /// Even and odd samples of each block.
     halves: Vec<[BlockSums; 2]>,
 }
 
 impl<'a> TileSums<'a> {
-    /// The sums so far; `film` is the tile alone.
-    pub fn of(film: &'a mut Film, tile: &'a Tile) -> Self {
+    /// The sums so far; `film` is the tiles alone.
+    pub fn of(film: &'a mut Film, tiles: &'a Tiles) -> Self {
         let mut sums = Self {
-            tile,
+            tiles,
             film,
             halves: Vec::new(),
         };
-        for block in tile.blocks() {
+        for block in tiles.blocks() {
             let mut halves = [BlockSums::default(); 2];
             for (i, place) in block.places.iter().enumerate() {
                 let of_pixel = sums.film.pixels[sums.pixel(place)];
@@ -41,12 +41,15 @@ impl<'a> TileSums<'a> {
 
     /// Adds `count` samples of each pixel, from sample `first` on.
     pub fn add<T: Single>(&mut self, [first, count]: [u32; 2], results: &Results) {
-        let (tile, halves) = (self.tile, &mut self.halves);
+        let (tiles, halves) = (self.tiles, &mut self.halves);
+        for (costs, paths) in self.film.costs.iter_mut().zip(tiles.paths(count)) {
+            costs.rays += results.rays(paths) as f64;
+        }
+        // Of what else is counted only the sum over the image is asked for.
         let costs = &mut self.film.costs[0];
-        costs.rays += results.rays() as f64;
         costs.cut += results.cut;
         vectorized!(T, {
-            for (block, halves) in tile.blocks().zip(halves) {
+            for (block, halves) in tiles.blocks().zip(halves) {
                 for sample in 0..count {
                     let colors = results.radiances(block.path([sample, count]));
                     let mut are_sound = [false; BLOCK_PIXELS];
@@ -69,7 +72,7 @@ impl<'a> TileSums<'a> {
             return;
         }
         for sample in 0..count {
-            for block in self.tile.blocks() {
+            for block in self.tiles.blocks() {
                 let path = block.path([sample, count]);
                 for (place, path) in block.places.iter().zip(path..) {
                     let (pixel, found) = (self.pixel(place), results.get(path));
@@ -80,10 +83,8 @@ impl<'a> TileSums<'a> {
                     let half = (first + sample) as usize % 2;
                     self.film.add_lights(pixel, half, results.groups(path));
                     self.film.costs[0].clamped += found.clamped.to_f64();
-                    if first + sample < GUIDE_SAMPLES
-                        && let Some(guides) = self.film.guides.get_mut(pixel)
-                    {
-                        guides[half].add(&found.guides);
+                    if first + sample < GUIDE_SAMPLES {
+                        self.film.add_guides(pixel, half, &found.guides);
                     }
                 }
             }
@@ -92,7 +93,7 @@ impl<'a> TileSums<'a> {
 
     /// Writes the sums back to the film.
     pub fn finish(self) {
-        for (block, halves) in self.tile.blocks().zip(&self.halves) {
+        for (block, halves) in self.tiles.blocks().zip(&self.halves) {
             for (i, place) in block.places.iter().enumerate() {
                 let pixel = self.pixel(place);
                 self.film.pixels[pixel] = halves.each_ref().map(|half| half.get(i));

@@ -257,6 +257,12 @@ impl GpuEngine {
         Ok(&self.film)
     }
 
+    /// The film of an engine that ends.
+    pub fn into_film(mut self) -> Result<Film, GpuError> {
+        self.flush()?;
+        Ok(self.film)
+    }
+
     /// The samples rendered per tile.
     pub fn schedule(&self) -> &Schedule {
         &self.schedule
@@ -282,10 +288,13 @@ fn merge_band(gpu: &GpuDevice, film: &mut Film, band: &Band, part: Range<usize>)
             film.add_light(pixel, group, light_sums(light));
         }
     }
-    if film.extras().guides {
+    if film.extras().guides > 0 {
         let guides: Vec<[GuideSums; 2]> = gpu.read(guides, part)?;
-        let sums = film.guides[first..].as_flattened_mut().iter_mut();
-        sums.zip(guides.as_flattened()).for_each(|(sums, seen)| sums.add(seen));
+        for (pixel, halves) in (first..).zip(&guides) {
+            (0..)
+                .zip(halves)
+                .for_each(|(half, seen)| film.add_guides(pixel, half, seen));
+        }
     }
     Ok(())
 }

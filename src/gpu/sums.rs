@@ -115,7 +115,11 @@ impl Sums {
 
 /// Bytes per pixel of the three buffers of a band.
 fn pixel_bytes(extras: Extras) -> [usize; 3] {
-    let guides = if extras.guides { size_of::<[GuideSums; 2]>() } else { 0 };
+    let guides = if extras.guides > 0 {
+        size_of::<[GuideSums; 2]>()
+    } else {
+        0
+    };
     [
         (1 + extras.light_groups as usize) * size_of::<PixelColors>(),
         size_of::<PixelStatistics>(),

@@ -1,6 +1,6 @@
 //! What is known of each pixel beside its colour: what is seen there first, and its samples. For compositing and maps.
 
-use super::film::Film;
+use super::{film::Film, guides::GuideSums};
 use crate::parallel;
 
 /// Means over some samples of each pixel; row by row from the top.
@@ -29,8 +29,8 @@ impl Features {
     /// The same with the number of guide samples of each half, by pixel.
     pub fn of_samples(film: &Film, samples: impl Fn(usize) -> [f64; 2] + Sync, world_units_per_unit: f64) -> Self {
         let guides = |pixel: usize| {
-            let [mut sums, odd] = film.guides.get(pixel).copied().unwrap_or_default();
-            sums.add(&odd);
+            let mut sums = GuideSums::default();
+            film.guides_of(pixel).iter().for_each(|half| sums.add(half));
             sums
         };
         let means = |pixel: usize| guides(pixel).means(samples(pixel).iter().sum());

@@ -15,9 +15,9 @@ pub struct Film {
     pub pixels: Vec<[HalfSums; 2]>,
     /// Sums of coverage; empty if every pixel is covered.
     pub coverage: Vec<f64>,
-    /// First-hit guides of the first [`GUIDE_SAMPLES`] samples of each pixel, of the even and the odd ones; empty if not
-    /// requested.
-    pub guides: Vec<[GuideSums; 2]>,
+    /// First-hit guides of the first [`GUIDE_SAMPLES`] samples, those of a pixel in a row: of the even and the odd ones, or
+    /// of all; empty if not requested.
+    pub guides: Vec<GuideSums>,
     /// Sums of each light group, those of a pixel in a row; empty if not requested.
     pub lights: Vec<LightSums>,
     /// Costs and removed energy per tile.
@@ -32,8 +32,8 @@ pub type LightSums = [[f64; 3]; 2];
 pub struct Extras {
     /// Coverage, 8 bytes a pixel: the background is transparent.
     pub coverage: bool,
-    /// First-hit guides, 64 bytes per pixel: for layers and the denoiser.
-    pub guides: bool,
+    /// First-hit guides per pixel, 32 bytes each: 2, of either half, for the denoiser; 1 for layers alone; or 0.
+    pub guides: u32,
     /// Light groups that are summed apart, 48 bytes per pixel each.
     pub light_groups: u32,
 }
@@ -131,18 +131,22 @@ impl Extras {
     pub fn of(job: &Job) -> Self {
         Self {
             coverage: job.settings.background == BackgroundKind::Transparent,
-            guides: job.plan.has(EffectId::Guides),
+            guides: if job.plan.has(EffectId::Guides) {
+                job.settings.guides
+            } else {
+                0
+            },
             light_groups: job.settings.light_groups,
         }
     }
 
     /// Bytes of a film for each pixel.
     pub fn pixel_bytes(self) -> u64 {
-        let extra = |is_kept: bool, size: usize| if is_kept { size } else { 0 };
         let tile = size_of::<TileCosts>().div_ceil(64);
-        let coverage = extra(self.coverage, size_of::<f64>());
+        let coverage = if self.coverage { size_of::<f64>() } else { 0 };
+        let guides = self.guides as usize * size_of::<GuideSums>();
         let lights = self.light_groups as usize * size_of::<LightSums>();
-        (size_of::<[HalfSums; 2]>() + tile + coverage + extra(self.guides, size_of::<[GuideSums; 2]>()) + lights) as u64
+        (size_of::<[HalfSums; 2]>() + tile + coverage + guides + lights) as u64
     }
 }
 
@@ -155,13 +159,12 @@ impl Film {
     /// An empty film.
     pub fn keeping(width: u32, height: u32, extras: Extras) -> Self {
         let pixels = width as usize * height as usize;
-        let kept = |is_kept: bool| if is_kept { pixels } else { 0 };
         Self {
             width,
             height,
             pixels: vec![Default::default(); pixels],
-            coverage: vec![0.0; kept(extras.coverage)],
-            guides: vec![Default::default(); kept(extras.guides)],
+            coverage: vec![0.0; if extras.coverage { pixels } else { 0 }],
+            guides: vec![Default::default(); pixels * extras.guides as usize],
             lights: vec![Default::default(); pixels * extras.light_groups as usize],
             costs: vec![TileCosts::default(); TileGrid { width, height }.tiles()],
         }
@@ -177,7 +180,7 @@ impl Film {
     pub fn extras(&self) -> Extras {
         Extras {
             coverage: !self.coverage.is_empty(),
-            guides: !self.guides.is_empty(),
+            guides: self.guides_each() as u32,
             light_groups: self.light_groups() as u32,
         }
     }
@@ -209,6 +212,24 @@ impl Film {
         if let Some(sum) = self.coverage.get_mut(pixel) {
             *sum += coverage;
         }
+    }
+
+    /// Adds to a pixel's guides of the even or the odd samples, if kept.
+    pub fn add_guides(&mut self, pixel: usize, half: usize, seen: &GuideSums) {
+        let each = self.guides_each();
+        if each > 0 {
+            self.guides[pixel * each + half % each].add(seen);
+        }
+    }
+
+    /// A pixel's guides.
+    pub fn guides_of(&self, pixel: usize) -> &[GuideSums] {
+        let each = self.guides_each();
+        &self.guides[pixel * each..][..each]
+    }
+
+    fn guides_each(&self) -> usize {
+        self.guides.len() / self.pixel_count().max(1)
     }
 
     /// Sums over all samples of a pixel.
@@ -284,6 +305,24 @@ impl Film {
         copy((&mut self.coverage, to), (&film.coverage, from), count, pixels);
         copy((&mut self.guides, to), (&film.guides, from), count, pixels);
         copy((&mut self.lights, to), (&film.lights, from), count, pixels);
+    }
+
+    /// Splits off the last rows, without tile costs. What they took of memory is free.
+    pub fn split_rows(&mut self, rows: u32) -> Film {
+        fn cut<T>(of: &mut Vec<T>, [pixels, kept]: [usize; 2]) {
+            of.truncate(of.len() / pixels * kept);
+            of.shrink_to_fit();
+        }
+        let mut part = Film::keeping(self.width, rows, self.extras());
+        let pixels = self.pixel_count();
+        let sizes = [pixels, pixels - part.pixel_count()];
+        part.copy_pixels(0, self, sizes[1], pixels - sizes[1]);
+        self.height -= rows;
+        cut(&mut self.pixels, sizes);
+        cut(&mut self.coverage, sizes);
+        cut(&mut self.guides, sizes);
+        cut(&mut self.lights, sizes);
+        part
     }
 
     /// The chosen pixels as a film of one row, without tile costs.

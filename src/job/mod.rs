@@ -111,6 +111,8 @@ pub struct Settings {
     pub least_reflections: u32,
     /// Light groups whose light is also summed apart, see [`light_sums`]; 0: none.
     pub light_groups: u32,
+    /// First-hit guides per pixel, where any are kept: 2, of the even and the odd samples, or 1 where nothing is denoised.
+    pub guides: u32,
     /// Largest radiance of indirect contributions; infinite for no limit.
     pub firefly_clamp: f64,
     pub sequence: Sequence,

@@ -187,6 +187,10 @@ macro_rules! lanes {
                     }
                     fn from_each(numbers: &[f32; LANES]) -> Self { Self($numbers::load_array_ref(token(), numbers)) }
                     fn to_each(self) -> [f32; LANES] { self.0.to_array() }
+                    fn to_integers(self) -> [i32; LANES] {
+                        let whole: $whole<S> = self.0.to_int_precise();
+                        whole.to_array()
+                    }
                     fn load(numbers: &[f32]) -> Self { Self($numbers::from_slice(token(), &numbers[..LANES])) }
                     fn store(self, numbers: &mut [f32]) { self.0.store_slice(&mut numbers[..LANES]); }
                     fn vectorize<R>(f: impl FnOnce() -> R) -> R { token::<S>().vectorize(f) }

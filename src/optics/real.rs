@@ -136,6 +136,8 @@ pub trait Real:
     fn from_each(numbers: &Self::Each<Self::Scalar>) -> Self;
     /// The numbers of the lanes.
     fn to_each(self) -> Self::Each<Self::Scalar>;
+    /// The numbers towards zero as whole ones, limited to their range; 0 for NaN.
+    fn to_integers(self) -> Self::Each<i32>;
     /// The first numbers of a list, which has as many as there are lanes or more.
     fn load(numbers: &[Self::Scalar]) -> Self;
     /// Stores the lanes at the start of a slice.
@@ -191,8 +193,8 @@ pub trait Real:
         }
         /// The numbers of a table at places that are whole and within it.
         fn look_up(table: &[f32], place: Self) -> Self {
-            let places = place.to_each();
-            Self::from_lanes(|lane| Self::Scalar::from_f64(f64::from(table[places[lane].to_f64() as usize])))
+            let places = place.to_integers();
+            Self::from_lanes(|lane| Self::Scalar::from_f64(f64::from(table[places[lane] as usize])))
         }
     }
 }

@@ -49,6 +49,7 @@ macro_rules! real {
                 fn each<E: Copy + Default>(mut f: impl FnMut(usize) -> E) -> [E; 1] { [f(0)] }
                 fn from_each(numbers: &[Self; 1]) -> Self { numbers[0] }
                 fn to_each(self) -> [Self; 1] { [self] }
+                fn to_integers(self) -> [i32; 1] { [self as i32] }
                 fn load(numbers: &[Self]) -> Self { numbers[0] }
                 fn store(self, numbers: &mut [Self]) { numbers[0] = self; }
                 fn vectorize<R>(f: impl FnOnce() -> R) -> R { f() }

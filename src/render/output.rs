@@ -67,7 +67,7 @@ impl<'a> From<&'a Layers> for Rendered<'a> {
 }
 
 /// An image with per-pixel layers (AOVs).
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Layers {
     /// The linear image.
     pub image: Image,
@@ -83,12 +83,54 @@ impl Layers {
     pub fn of(film: &Film, features: Features) -> Self {
         Self {
             image: film.image(),
-            denoised: None,
             features,
-            lights: Vec::new(),
+            ..Self::default()
         }
     }
+
+    /// The layers of a film that goes as they are made, so that both together take little more memory than the film.
+    pub fn taken(mut film: Film, world_units_per_unit: f64) -> Self {
+        let (width, pixels) = (film.width as usize, film.pixel_count());
+        let mut all = Self {
+            image: Image {
+                width: film.width,
+                height: film.height,
+                pixels: vec![[0.0; 4]; pixels],
+            },
+            features: Features {
+                albedo: vec![[0.0; 3]; pixels],
+                normal: vec![[0.0; 3]; pixels],
+                depth: vec![0.0; pixels],
+                samples: vec![0.0; pixels],
+                variance: vec![0.0; pixels],
+            },
+            ..Self::default()
+        };
+        while film.height > 0 {
+            let part = film.split_rows(TAKEN_ROWS.min(film.height));
+            let features = Features::of(&part, world_units_per_unit);
+            all.put(film.height as usize * width, &Self::of(&part, features));
+        }
+        all
+    }
+
+    /// Copies the pixels of a part to their place, from pixel `first` on.
+    fn put(&mut self, first: usize, part: &Self) {
+        fn copy<T: Copy>(to: &mut [T], first: usize, from: &[T]) {
+            to[first..][..from.len()].copy_from_slice(from);
+        }
+        let (own, of_part) = (&mut self.features, &part.features);
+        copy(&mut self.image.pixels, first, &part.image.pixels);
+        copy(&mut own.albedo, first, &of_part.albedo);
+        copy(&mut own.normal, first, &of_part.normal);
+        copy(&mut own.depth, first, &of_part.depth);
+        copy(&mut own.samples, first, &of_part.samples);
+        copy(&mut own.variance, first, &of_part.variance);
+    }
 }
+
+/// Rows of a film that go at a time as its layers are made.
+const TAKEN_ROWS: u32 = 64;
 
 /// The formats, by a file's ending.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

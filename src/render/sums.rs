@@ -88,8 +88,8 @@ impl KeptFilm {
         // Number of samples of either half before this range.
         let before = [first.div_ceil(2), first / 2];
         let most = match film.extras().guides {
-            true => before.map(|before| (GUIDE_SAMPLES / 2).saturating_sub(before)),
-            false => [0; 2],
+            2 => before.map(|before| (GUIDE_SAMPLES / 2).saturating_sub(before)),
+            _ => [0; 2],
         };
         let guide_samples = (0..film.pixel_count())
             .map(|pixel| std::array::from_fn(|half| most[half].min(film.pixels[pixel][half].samples as u32)))
@@ -184,7 +184,7 @@ impl KeptFilm {
                     channels.extend(double(name, Array::Lights, 6 * group + 3 * half + i));
                 }
             }
-            if extras.guides {
+            if extras.guides == 2 {
                 let guides = GUIDES.into_iter().enumerate();
                 let guides =
                     guides.map(|(i, name)| (format!("guides.{word}.{name}"), Array::Guides, 8 * half + i, true));
@@ -238,7 +238,7 @@ impl KeptFilm {
         let groups = without_what_is_off(&document).light_groups();
         let extras = Extras {
             coverage: file.find("coverage.high").is_some(),
-            guides: file.has_guides(),
+            guides: if file.has_guides() { 2 } else { 0 },
             light_groups: groups.len() as u32,
         };
         let film = Film::keeping(file.layer.size.0 as u32, file.layer.size.1 as u32, extras);
@@ -314,10 +314,10 @@ impl KeptFilm {
                 self.film.add_light(pixel, group, *more);
             }
         }
-        if other.film.extras().guides {
+        if other.film.extras().guides > 0 {
             self.film.guides.resize(other.film.guides.len(), Default::default());
-            let (own, more) = (self.film.guides.as_flattened_mut(), other.film.guides.as_flattened());
-            own.iter_mut().zip(more).for_each(|(guides, more)| guides.add(more));
+            let own = self.film.guides.iter_mut();
+            own.zip(&other.film.guides).for_each(|(guides, more)| guides.add(more));
             let (own, more) = (
                 self.guide_samples.as_flattened_mut(),
                 other.guide_samples.as_flattened(),

@@ -58,9 +58,8 @@ pub fn grid_place<T: Scalar>(xi: [T; 2], size: [u32; 2]) -> (u32, [T; 2]) {
 pub fn grid_places<T: Real>(xi: [T; 2], size: [u32; 2]) -> (T::Each<u32>, [T; 2]) {
     let [column, x] = split(xi[0], size[0]);
     let [row, y] = split(xi[1], size[1]);
-    let (columns, rows) = (column.to_each(), row.to_each());
-    let number = |whole: T::Scalar| whole.to_f64() as u32;
-    let cell = |lane| number(rows[lane]) * size[0] + number(columns[lane]);
+    let (columns, rows) = (column.to_integers(), row.to_integers());
+    let cell = |lane| rows[lane] as u32 * size[0] + columns[lane] as u32;
     (T::each(cell), [x, y])
 }
 

@@ -4,7 +4,7 @@
 //!
 //! Twin: `shaders/scene/inversion.wgsl`.
 
-use crate::optics::real::Scalar;
+use crate::optics::real::{Real, Scalar};
 
 /// Random numbers have so many bits ([`unit_from_bits`](crate::optics::random::unit_from_bits)), and so many values.
 pub const DRAW_BITS: u32 = 24;
@@ -72,9 +72,10 @@ pub fn slot(count: u32, number: u32) -> u32 {
     number >> slot_shift(count)
 }
 
-/// A random number in [0, 1) as one of the 2²⁴.
-pub fn draw_number<T: Scalar>(xi: T) -> u32 {
-    (xi.to_f64() * f64::from(DRAWS)) as u32
+/// Random numbers in [0, 1) as one of the 2²⁴ each.
+#[inline(always)]
+pub fn draw_numbers<T: Real>(xi: T) -> T::Each<i32> {
+    (xi * T::from_f64(f64::from(DRAWS))).to_integers()
 }
 
 /// The entry out of `count` that a number selects.

@@ -103,7 +103,7 @@ const SIDE: u32 = 32;
 
 fn film_of(halves: [&Half; 2]) -> Film {
     let extras = Extras {
-        guides: true,
+        guides: 2,
         ..Extras::default()
     };
     let mut film = Film::keeping(SIDE, SIDE, extras);
@@ -117,12 +117,13 @@ fn film_of(halves: [&Half; 2]) -> Film {
                     continue;
                 }
                 film.add(pixel, number, [half.brightness * f64::from(light); 4]);
-                film.guides[pixel][number as usize].add(&GuideSums {
+                let seen = GuideSums {
                     albedo: [albedo; 3],
                     hits: 1.0,
                     normal: [0.0, 0.0, 1.0 - albedo],
                     depth: 1.0,
-                });
+                };
+                film.add_guides(pixel, number as usize, &seen);
             }
         }
     }

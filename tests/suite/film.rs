@@ -2,10 +2,13 @@
 
 use std::borrow::Cow;
 
-use glossmith::job::{
-    film::Extras,
-    film::Film,
-    tiles::{Order, Schedule, SliceLimits, TileGrid},
+use glossmith::{
+    job::{
+        features::Features,
+        film::{Extras, Film},
+        tiles::{Order, Schedule, SliceLimits, TileGrid},
+    },
+    render::output::Layers,
 };
 
 /// Samples of a mean that is far larger than their spread.
@@ -49,30 +52,31 @@ fn small_spreads_of_large_values_are_kept_and_do_not_stall() {
 fn parts_come_back_to_their_place() {
     let mut film = Film::keeping(
         21,
-        19,
+        83,
         Extras {
             coverage: true,
-            guides: true,
+            guides: 2,
             light_groups: 2,
         },
     );
     for pixel in 0..film.pixel_count() {
         film.add(pixel, pixel as u32, [pixel as f64, 1.0, 2.0, 0.5]);
-        film.guides[pixel][1].hits = pixel as f32;
+        film.guides[2 * pixel + 1].hits = pixel as f32;
         film.add_lights(pixel, 1, [[pixel as f64; 3], [0.5; 3]]);
     }
     for (tile, costs) in film.costs.iter_mut().enumerate() {
         costs.rays = tile as f64;
     }
-    let mut copy = Film::keeping(21, 19, film.extras());
+    let mut copy = Film::keeping(21, 83, film.extras());
+    // Two tiles at a time, as far as there are.
     for tile in 0..film.grid().tiles() {
         let origin = film.grid().origin(tile);
-        copy.place(origin, &film.part(origin, film.grid().size(tile)));
+        let size = [(21 - origin[0]).min(16), film.grid().size(tile)[1]];
+        copy.place(origin, &film.part(origin, size));
     }
     assert_eq!(copy, film);
-    let mut whole = Film::keeping(21, 19, film.extras());
-    whole.place([0, 0], &film.part([0, 0], [21, 19]));
-    assert_eq!(whole, film);
+    let layers = Layers::of(&film, Features::of(&film, 2.0));
+    assert_eq!(Layers::taken(film, 2.0), layers);
 }
 
 #[test]

@@ -34,7 +34,11 @@ impl<T: Single> Group<T> {
         /// A field's element per path; lanes beyond the group repeat the first path's.
         pub fn each<E: Copy + Default>(&self, field: &[E]) -> T::Each<E> {
             let field = &field[self.first..self.first + T::LANES];
-            T::each(|lane| field[if lane < self.count { lane } else { 0 }])
+            // Nearly all groups are full: a plain copy.
+            match self.count == T::LANES {
+                true => T::each(|lane| field[lane]),
+                false => T::each(|lane| field[if lane < self.count { lane } else { 0 }]),
+            }
         }
 
         pub fn members(&self, ids: &[u16]) -> Members<T> {

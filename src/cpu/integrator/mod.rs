@@ -46,7 +46,7 @@ use catcher_hit::CatcherHit;
 use group::{Group, Members};
 use paths::{GuideRecord, Paths};
 pub use results::Results;
-pub use wave::{BLOCK_PIXELS, PATHS, Tile, WAVE_SAMPLES, Wave};
+pub use wave::{BLOCK_PIXELS, PATHS, Tiles, WAVE_SAMPLES, Wave};
 
 /// Random pairs before the first bounce: pixel and lens.
 pub const FIRST_DIMENSION: u32 = 2;

@@ -3,6 +3,7 @@
 use super::{PathResult, group::Group, vectors::Vectors};
 use crate::job::guides::GuideSums;
 use crate::optics::prelude::*;
+use std::ops::Range;
 
 /// Results by path id. The fields have room for one more group of lanes.
 pub struct Results {
@@ -68,28 +69,28 @@ impl Results {
         radiances
     }
 
-    /// Number of rays traced by all paths.
-    pub fn rays(&self) -> u64 {
-        self.rays[..self.count].iter().copied().map(u64::from).sum()
+    /// Number of rays traced by some paths.
+    pub fn rays(&self, paths: Range<usize>) -> u64 {
+        self.rays[paths].iter().copied().map(u64::from).sum()
     }
 
     /// Starts over with `count` paths, each counting its camera ray.
     pub fn start(&mut self, count: usize, has_extras: bool) {
         (self.count, self.has_extras, self.cut) = (count, has_extras, 0.0);
         self.guides.clear();
+        self.guides
+            .resize(if has_extras { count } else { 0 }, GuideSums::default());
         self.rays[..count].fill(1);
     }
 
-    /// Stores the results of all paths.
-    pub fn fill(&mut self, results: impl Iterator<Item = PathResult>) {
-        for (path, result) in results.enumerate() {
-            self.radiance.set(path, result.radiance);
-            self.alpha[path] = result.alpha;
-            self.clamped[path] = result.clamped;
-            self.rays[path] = result.rays;
-            if self.has_extras {
-                self.guides.push(result.guides);
-            }
+    /// Stores the result of one path.
+    pub fn put(&mut self, path: usize, result: PathResult) {
+        self.radiance.set(path, result.radiance);
+        self.alpha[path] = result.alpha;
+        self.clamped[path] = result.clamped;
+        self.rays[path] = result.rays;
+        if let Some(guides) = self.guides.get_mut(path) {
+            *guides = result.guides;
         }
     }
 

@@ -1,4 +1,4 @@
-//! The wavefront path tracer of a tile: several samples of all its pixels advance together, one bounce at a time.
+//! The wavefront path tracer of tiles: several samples of all their pixels advance together, one bounce at a time.
 //!
 //! Rays of the same direction octant are traced in packets. Paths that hit the same material slot are shaded together in SIMD
 //! lanes. Each bounce has five steps: intersect the rays, sort the hits by material, shade, trace shadow rays, add direct light.
@@ -11,7 +11,7 @@ use super::*;
 use crate::{
     cpu::recorder::Unrecorded,
     instructions,
-    job::{BackgroundKind, tiles::TILE_SIDE},
+    job::tiles::TILE_SIDE,
     optics::layer::material_layers,
     scene::{Hit, OCTANTS, Packet, ray_octant},
 };
@@ -20,8 +20,8 @@ use std::ops::Range;
 /// Pixels of a tile at most.
 const PIXELS: usize = (TILE_SIDE * TILE_SIDE) as usize;
 /// Samples per pixel of a wave at most.
-pub const WAVE_SAMPLES: u32 = 8;
-/// Paths of a wave at most.
+pub const WAVE_SAMPLES: u32 = 16;
+/// Paths of a wave at most: enough to fill packets and lanes, and few enough for the second cache.
 pub const PATHS: usize = PIXELS * WAVE_SAMPLES as usize;
 /// Pixels of a block, 2 × 2: four samples of each make one ray packet.
 pub const BLOCK_PIXELS: usize = 4;
@@ -31,16 +31,20 @@ const SHADOW_PACKET_MIN: usize = 4;
 /// needs the closest hits visits more of the hierarchy.
 const PACKET_MIN: usize = 8;
 
-/// A tile of the image, at most [`TILE_SIDE`] pixels wide and high.
-pub struct Tile {
+/// Neighbouring tiles of a row of the image; any but the last are [`TILE_SIDE`] pixels wide.
+pub struct Tiles {
     pub origin: [u32; 2],
-    /// Its pixels from its corner on, in Morton order, so that the pixels of a block are consecutive.
+    /// Their pixels from the corner on, tile by tile, each in Morton order, so that the pixels of a block are consecutive.
     places: Vec<[u32; 2]>,
+    /// Numbers of their pixels.
+    ends: Vec<usize>,
 }
 
 /// The buffers of a wavefront, reused from tile to tile. A `u16` is the index of a path in the fields of [`Paths`].
 pub struct Wave<R = Unrecorded> {
     pub paths: Paths<R>,
+    /// The paths of tiles that are not background alone.
+    pub(super) traced: Vec<Range<usize>>,
     /// Paths that have not ended.
     active: Vec<u16>,
     /// Paths whose rays hit a surface, with the material slot as sort key.
@@ -49,21 +53,24 @@ pub struct Wave<R = Unrecorded> {
     escaped: Vec<u16>,
     /// The order of shading: `hits` sorted by slot, then `escaped`.
     order: Vec<u16>,
-    packets: Vec<Packet>,
+    /// The packets of a tile's camera rays.
+    pub(super) packets: Vec<Packet>,
     /// Per path the closest hit of its ray; unused if surfaces have holes.
-    intersections: Vec<Option<Hit>>,
+    pub(super) intersections: Vec<Option<Hit>>,
     /// Rays to trace, binned by octant.
     octants: OctantBins,
     /// Paths whose shadow ray is not blocked.
     unoccluded: Vec<u16>,
-    results: Results,
+    pub(super) results: Results,
 }
 
 impl<R: Recorder> Wave<R> {
     /// Buffers for so many paths in groups of `lanes`, a packet's at least; the paths draw from `sequence`.
     pub fn new(paths: usize, lanes: usize, sequence: Sequence) -> Self {
+        let lanes = lanes.max(PACKET);
         Self {
             paths: Paths::new(paths, lanes, sequence),
+            traced: Vec::new(),
             active: Vec::with_capacity(paths),
             hits: Vec::with_capacity(paths),
             escaped: Vec::with_capacity(paths),
@@ -83,51 +90,43 @@ impl<R: Recorder> Wave<R> {
 }
 
 impl<T: Single> Integrator<'_, T> {
-    /// Renders `count` samples per pixel of a tile, from sample `first` on. Calls `report` once per wave with that wave's first
+    /// Renders `count` samples per pixel of tiles, from sample `first` on. Calls `report` once per wave with that wave's first
     /// sample, its number of samples per pixel, and their results.
-    pub fn trace_tile(
+    pub fn trace_tiles(
         &self,
-        tile: &Tile,
+        tiles: &Tiles,
         wave: &mut Wave,
         [first, count]: [u32; 2],
         mut report: impl FnMut([u32; 2], &Results),
     ) {
         for from in (first..first + count).step_by(WAVE_SAMPLES as usize) {
             let samples = [from, WAVE_SAMPLES.min(first + count - from)];
-            let is_all_background = self.trace_wave(tile, samples, wave);
-            if !is_all_background {
-                let results = (0..wave.paths.count).map(|number| self.result(&wave.paths, number));
-                wave.results.fill(results);
-                wave.paths.finish_groups();
-                wave.results.light_groups.clone_from(&wave.paths.light_groups);
-                wave.results.cut = wave.paths.cut;
+            self.trace_wave(tiles, samples, wave);
+            for path in wave.traced.iter().cloned().flatten() {
+                wave.results.put(path, self.result(&wave.paths, path));
             }
+            wave.paths.finish_groups();
+            wave.results.light_groups.clone_from(&wave.paths.light_groups);
+            wave.results.cut = wave.paths.cut;
             report(samples, &wave.results);
         }
     }
 
-    /// Traces the paths of `samples` (first, count) to their ends. Returns true if every camera ray missed: then `wave.results`
-    /// is already complete.
-    pub fn trace_wave<R: Recorder>(&self, tile: &Tile, samples: [u32; 2], wave: &mut Wave<R>) -> bool {
+    /// Traces the paths of `samples` (first, count) to their ends. The results of tiles whose camera rays all miss are then
+    /// complete; the others are those of `wave.traced`.
+    pub fn trace_wave<R: Recorder>(&self, tiles: &Tiles, samples: [u32; 2], wave: &mut Wave<R>) {
         // One path per pixel and sample, with its camera ray.
-        self.add_paths(tile, samples, &mut wave.paths);
+        self.add_paths(tiles, samples, &mut wave.paths);
         let has_extras = self.firefly_clamp.is_some() || samples[0] < self.guide_samples;
         wave.results.start(wave.paths.count, has_extras);
-        // Camera rays of neighbouring pixels are coherent: trace them in packets. A tile of background alone ends here, which
-        // is cheaper, because no path state is set up. Surfaces with holes need a random number per hit instead (`intersect`).
-        if !self.has_holes {
-            self.trace_camera_rays(&wave.paths, &mut wave.packets, &mut wave.intersections);
-            let is_short =
-                !R::KEEPS && self.light_groups == 0 && !matches!(self.settings.background, BackgroundKind::Blurred(_));
-            if is_short && wave.intersections.iter().all(Option::is_none) {
-                self.shade_background(&wave.paths, &mut wave.results);
-                return true;
-            }
-            wave.intersections.resize(wave.paths.count, None);
+        self.trace_camera_rays(tiles.paths(samples[1]), wave);
+        wave.active.clear();
+        wave.active
+            .extend(wave.traced.iter().cloned().flatten().map(|path| path as u16));
+        if wave.active.is_empty() {
+            return;
         }
         self.start(&mut wave.paths);
-        wave.active.clear();
-        wave.active.extend(0..wave.paths.count as u16);
         for bounce in 0.. {
             // 1. Continuation rays; those of the camera have been traced above.
             if bounce > 0 && !self.has_holes {
@@ -151,7 +150,6 @@ impl<T: Single> Integrator<'_, T> {
                 break;
             }
         }
-        false
     }
 
     /// Intersects the continuation rays of the active paths, in packets by octant. For scenes without holes.
@@ -420,17 +418,27 @@ impl OctantBins {
     }
 }
 
-impl Tile {
-    /// A tile from its top left pixel and its size, both in pixels.
-    pub fn new(origin: [u32; 2], size: [u32; 2]) -> Self {
+impl Tiles {
+    /// Tiles from their top left pixel and their size together, both in pixels.
+    pub fn new(origin: [u32; 2], [width, height]: [u32; 2]) -> Self {
         // Morton order: a block of 2 × 2 pixels, then the next three blocks of a square, and so on.
         let every_second = |bits: u32| (bits & 1) | (bits >> 1 & 2) | (bits >> 2 & 4);
-        let places = (0..PIXELS as u32).map(|place| [every_second(place), every_second(place >> 1)]);
-        let places = places.filter(|[x, y]| *x < size[0] && *y < size[1]).collect();
-        Self { origin, places }
+        let (mut places, mut ends) = (Vec::new(), Vec::new());
+        for left in (0..width).step_by(TILE_SIDE as usize) {
+            let in_tile = (0..PIXELS as u32).map(|place| [left + every_second(place), every_second(place >> 1)]);
+            places.extend(in_tile.filter(|[x, y]| *x < width && *y < height));
+            ends.push(places.len());
+        }
+        Self { origin, places, ends }
     }
 
-    /// Its pixels in blocks of up to [`BLOCK_PIXELS`].
+    /// The paths of each tile in a wave of `count` samples per pixel.
+    pub fn paths(&self, count: u32) -> impl Iterator<Item = Range<usize>> {
+        let firsts = std::iter::once(&0).chain(&self.ends);
+        std::iter::zip(firsts, &self.ends).map(move |(first, end)| first * count as usize..end * count as usize)
+    }
+
+    /// Their pixels in blocks of up to [`BLOCK_PIXELS`].
     pub fn blocks(&self) -> impl Iterator<Item = PixelBlock<'_>> {
         let firsts = (0..).step_by(BLOCK_PIXELS);
         let blocks = self.places.chunks(BLOCK_PIXELS).zip(firsts);
@@ -441,9 +449,9 @@ impl Tile {
 /// Neighbouring pixels of a tile; the paths of one sample of them have consecutive ids.
 #[derive(Clone, Copy)]
 pub struct PixelBlock<'a> {
-    /// From the tile's corner on, in pixels.
+    /// From the tiles' corner on, in pixels.
     pub places: &'a [[u32; 2]],
-    /// Index of the first pixel in the tile's order.
+    /// Index of the first pixel in the tiles' order.
     first: usize,
 }
 

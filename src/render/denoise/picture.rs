@@ -146,8 +146,8 @@ impl NoisyHalf {
             let half = film.pixels[*pixel][number];
             half.color.map(|sum| (sum / half.samples).max(0.0) as f32)
         };
-        let guides = |pixel: usize| match film.guides.get(pixel) {
-            Some(guides) => guides[number].means(guide_samples(pixel)),
+        let guides = |pixel: usize| match film.guides_of(pixel).get(number) {
+            Some(guides) => guides.means(guide_samples(pixel)),
             None => Default::default(),
         };
         Some(Self {

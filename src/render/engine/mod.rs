@@ -139,6 +139,14 @@ impl Engine {
             Engine::Gpu(engine) => engine.film(),
         }
     }
+
+    /// The film of an engine that ends.
+    pub fn into_film(self) -> Result<Film, GpuError> {
+        match self {
+            Engine::Cpu(engine) => Ok(engine.hand_over().0),
+            Engine::Gpu(engine) => engine.into_film(),
+        }
+    }
 }
 
 pub fn cpu(reason: String) -> (Engine, EngineInfo) {

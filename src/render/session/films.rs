@@ -57,6 +57,21 @@ impl Session {
         })
     }
 
+    /// The same without light groups, of a session that ends, in little more memory than the film's.
+    pub fn into_layers(mut self) -> Result<Layers, SessionError> {
+        let units = self.world_units_per_unit();
+        let mixed = match self.mixed_film()? {
+            Cow::Owned(film) => Some(film),
+            Cow::Borrowed(_) => None,
+        };
+        let film = match mixed {
+            Some(film) => film,
+            None => std::mem::take(&mut self.engine).into_film()?,
+        };
+        drop(self);
+        Ok(Layers::taken(film, units))
+    }
+
     /// Writes the image and its light groups to a file, or the denoised image instead of the samples.
     pub fn write_image(&mut self, path: &Path, denoised: Option<&Image>, document: &Document) -> anyhow::Result<()> {
         let (image, lights) = (self.image()?, self.light_layers()?);

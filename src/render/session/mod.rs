@@ -21,6 +21,7 @@ use crate::{
     gpu::{GpuAdapter, GpuDevice, GpuError, Moment, Traversal},
     job::Job,
     job::effect::{Decision, EffectId},
+    job::film::Extras,
     scene::texture::UserTextureFile,
 };
 
@@ -49,6 +50,8 @@ pub struct Session {
     pub denoised: Option<Distance>,
     /// Reason to keep guides for any document.
     guides_wanted: Option<&'static str>,
+    /// Guides per pixel of documents that are not denoised.
+    pub guides: u32,
     /// Memory limit of a render in bytes; `None` is the free memory.
     pub memory_limit: Option<u64>,
     /// Number of GPU failures.
@@ -96,6 +99,7 @@ impl Session {
             is_stuck: false,
             denoised: None,
             guides_wanted: None,
+            guides: 2,
             memory_limit: memory::limit(),
             losses: 0,
             losing: None,
@@ -203,11 +207,14 @@ impl Session {
             if let Some(why) = self.guides_wanted {
                 job.plan = job.plan.with(EffectId::Guides, Decision::on(why));
             }
+            if !job.plan.has(EffectId::Denoising) {
+                job.settings.guides = self.guides;
+            }
             let job = Arc::new(job);
             // With only another goal, the engine continues with the same kernel. But a film without guides cannot get them
             // later.
-            let has_guides = |job: &Arc<Job>| job.plan.has(EffectId::Guides);
-            if change.restarts() || (has_guides(&job) && !self.job.as_ref().is_some_and(has_guides)) {
+            let guides = |job: &Arc<Job>| Extras::of(job).guides;
+            if change.restarts() || guides(&job) > self.job.as_ref().map_or(0, guides) {
                 self.check_memory(&job)?;
                 self.start(job.clone())?;
             }

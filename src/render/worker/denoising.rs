@@ -111,9 +111,9 @@ impl Denoising {
         !progress.is_done && (self.requested_samples == 0 || progress.render_seconds < AS_ONE_S)
     }
 
-    /// Whether a request is due. The first one is at once, or if it `may_wait` after [`FIRST_SHARE`] of the time that denoising
-    /// will take: more samples are worth more than an earlier image. Then at twice the samples of the one before within the time share,
-    /// and the last one.
+    /// Whether a request is due. The first one is at once, or if it `may_wait` after [`FIRST_SHARE`] of the time that
+    /// denoising will take: more samples are worth more than an earlier image. Then at twice the samples of the one before
+    /// within the time share, and the last one.
     pub fn is_due(&self, progress: &Progress, pixels: f64, may_wait: bool) -> bool {
         let samples = progress.samples_per_pixel;
         if samples <= self.requested_samples {

@@ -126,7 +126,11 @@ fn first_sample(submission: &Submission, reduction: u32, samples_per_second: f64
     } else {
         FIRST_GUESS
     };
+    Duration::from_secs_f64(pixels(submission, reduction) / speed)
+}
+
+/// Pixels of a submission's image at a reduction.
+pub fn pixels(submission: &Submission, reduction: u32) -> f64 {
     let render = &submission.document.render;
-    let pixels = f64::from(render.width) * f64::from(render.height) / f64::from(reduction * reduction);
-    Duration::from_secs_f64(pixels / speed)
+    f64::from(render.width) * f64::from(render.height) / f64::from(reduction * reduction)
 }

@@ -20,7 +20,7 @@ use serde::{Deserialize, Serialize};
 use crate::optics::prelude::*;
 use crate::scene::{
     alias::grid_places,
-    inversion::{draw_number, place_in, slot},
+    inversion::{draw_numbers, place_in, slot},
     memory::{in_large_pages, prefetch},
     path_text::path_of_text,
 };
@@ -344,7 +344,7 @@ inlined! {
         let (left, top) = (x.floor(), y.floor());
         let (width, height) = (environment.width as i32, environment.height as i32);
         // Written so that compilers turn it into lanes.
-        let (columns, rows) = (whole(left), whole(top));
+        let (columns, rows) = (left.to_integers(), top.to_integers());
         let (columns, rows) = (columns.as_ref(), rows.as_ref());
         // u is below 1: one step at most around the map.
         let left_column = |lane: usize| if columns[lane] < 0 { width - 1 } else { columns[lane] };
@@ -367,16 +367,10 @@ inlined! {
         }
     }
 
-    /// The whole numbers in lanes, of less than 2²⁴.
-    fn whole<T: Real>(numbers: T) -> T::Each<i32> {
-        let numbers = numbers.to_each();
-        let numbers = numbers.as_ref();
-        T::each(|lane| numbers[lane].to_f64() as f32 as i32)
-    }
-
-    /// Prefetches the texels at map coordinates.
+    /// Prefetches the texels at map coordinates: the left ones, as four neighbours share a cache line.
     pub fn prefetch_texels<T: Real>(environment: &Environment, uv: [T; 2]) {
-        for texels in &bilinear(environment, uv).texels {
+        let [upper_left, _, lower_left, _] = &bilinear(environment, uv).texels;
+        for texels in [upper_left, lower_left] {
             for &texel in texels.as_ref() {
                 prefetch(&environment.texels, texel as usize);
             }
@@ -402,20 +396,21 @@ inlined! {
 
     /// The rows of cells that [`environment_sample`] draws with `xi.y`.
     pub fn drawn_rows<T: Real>(distribution: &Distribution, xi_y: T) -> T::Each<u32> {
-        let numbers = xi_y.to_each();
-        T::each(|lane| distribution.row(draw_number(numbers[lane])))
+        let numbers = draw_numbers(xi_y);
+        T::each(|lane| distribution.row(numbers[lane] as u32))
     }
 
     /// [`environment_sample`] for known rows.
     pub fn sample_in_rows<T: Real>(distribution: &Distribution, rows: &T::Each<u32>, xi: Vec3<T>) -> (Vec3<T>, T) {
         let (width, height) = (distribution.width, distribution.height);
-        let numbers = xi.to_each();
+        let (numbers, row_numbers) = (draw_numbers(xi.x), draw_numbers(xi.y));
+        let [across, down] = jitter(xi.z);
+        let (across, down) = (across.to_each(), down.to_each());
         let drawn = T::each(|lane| {
-            let xi = numbers[lane];
-            let [row_number, number] = [draw_number(xi.y), draw_number(xi.x)];
+            let [row_number, number] = [row_numbers[lane] as u32, numbers[lane] as u32];
             let row = distribution.row_at(rows[lane]);
             let column = distribution.column(row.index, number);
-            let [x, y] = jitter(xi.z);
+            let [x, y] = [across[lane], down[lane]];
             let density = distribution.cells[(row.index * width + column.index) as usize].density;
             let place = [place_in(column, number, x), place_in(row, row_number, y)];
             (
@@ -440,21 +435,21 @@ inlined! {
     }
 }
 
-/// Two numbers in [0, 1) of twelve bits out of one of 24.
-fn jitter<T: Scalar>(xi: T) -> [T; 2] {
-    let steps = T::from_f64(4096.0);
-    let scaled = xi * steps;
-    let whole = scaled.floor();
-    [whole / steps, scaled - whole]
-}
-
 inlined! {
+    /// Two numbers in [0, 1) of twelve bits out of one of 24.
+    fn jitter<T: Real>(xi: T) -> [T; 2] {
+        let steps = T::from_f64(4096.0);
+        let scaled = xi * steps;
+        let whole = scaled.floor();
+        [whole / steps, scaled - whole]
+    }
+
     /// Per lane the first cell of its row, and the cell with the guide of `xi_x`.
     fn guides<T: Real>(distribution: &Distribution, rows: &T::Each<u32>, xi_x: T) -> T::Each<[u32; 2]> {
-        let (width, numbers) = (distribution.width, xi_x.to_each());
+        let (width, numbers) = (distribution.width, draw_numbers(xi_x));
         T::each(|lane| {
             let first = rows[lane] * width;
-            [first, first + slot(width, draw_number(numbers[lane]))]
+            [first, first + slot(width, numbers[lane] as u32)]
         })
     }
 

@@ -6,7 +6,7 @@
 
 use fearless_simd::{ExtractToken, Simd, SimdBase, SimdMask, f32x8, f32x16, mask32x16};
 
-use super::traverse::{BoxRay, HitSink, INVERSE_MAX, RELATIVE_ERROR, SingleRay, StackEntry, TriangleRay};
+use super::traverse::{BoxRay, HitSink, INVERSE_MAX, Leaves, RELATIVE_ERROR, SingleRay, StackEntry, TriangleRay};
 use super::wide::{Block, Node, Normals, WIDTH, Wide};
 use crate::{optics::real::inlined, scene::Hit};
 
@@ -146,6 +146,20 @@ impl<const ANY: bool> HitSink for LaneSink<'_, ANY> {
     }
 }
 
+/// The tests of one lane's ray against triangles, prepared at each leaf: many rays meet none.
+struct LaneTriangles<'r, S: Simd> {
+    rays: &'r PacketRays<S>,
+    lane: usize,
+}
+
+impl<S: Simd> Leaves for LaneTriangles<'_, S> {
+    #[inline(always)]
+    fn intersect<const ANY: bool, M: HitSink>(&self, wide: &Wide, block: usize, entered: f32, sink: &mut M) -> bool {
+        let ray = self.rays.triangles(self.lane);
+        ray.intersect::<ANY, M>(wide, block, entered, sink)
+    }
+}
+
 /// Octant of a direction: its signs (bits 0 to 2) and its longest axis (bits 3 and 4). Rays of a packet share it.
 pub fn ray_octant(direction: [f32; 3]) -> usize {
     let [x, y, z] = direction.map(f32::abs);
@@ -170,6 +184,15 @@ inlined! {
 
     fn load_three<S: Simd>(simd: S, axes: &[[f32; PACKET]; 3]) -> [f32x16<S>; 3] {
         [load(simd, &axes[0]), load(simd, &axes[1]), load(simd, &axes[2])]
+    }
+
+    /// A lane's number, in all lanes.
+    fn splat<S: Simd>(all: &f32x16<S>, lane: usize) -> f32x8<S> {
+        f32x8::splat(all.token(), all.as_slice()[lane])
+    }
+
+    fn splats<S: Simd>([x, y, z]: &[f32x16<S>; 3], lane: usize) -> [f32x8<S>; 3] {
+        [splat(x, lane), splat(y, lane), splat(z, lane)]
     }
 
     /// The octant of all rays; `None` if they differ.
@@ -319,26 +342,28 @@ impl<S: Simd> PacketRays<S> {
         is_closer
     }
 
-    /// A lane's ray for single-ray traversal.
-    #[inline(always)]
-    fn single(&self, lane: usize) -> SingleRay<S> {
-        let simd = self.origin[0].token();
-        let splat = |all: f32x16<S>| f32x8::splat(simd, all.as_slice()[lane]);
-        let splats = |[x, y, z]: [f32x16<S>; 3]| [splat(x), splat(y), splat(z)];
-        let [shear_x, shear_y] = self.shear;
-        SingleRay {
-            boxes: BoxRay {
-                inverse: splats(self.inverse),
-                near_offset: splats(self.near_offset),
-                far_offset: splats(self.far_offset),
-                near: self.near,
-            },
-            leaves: TriangleRay {
-                origin: splats(self.origin),
-                direction: splats(self.direction),
+    inlined! {
+        /// A lane's ray for single-ray traversal.
+        fn single(&self, lane: usize) -> SingleRay<S, LaneTriangles<'_, S>> {
+            SingleRay {
+                boxes: BoxRay {
+                    inverse: splats(&self.inverse, lane),
+                    near_offset: splats(&self.near_offset, lane),
+                    far_offset: splats(&self.far_offset, lane),
+                    near: self.near,
+                },
+                leaves: LaneTriangles { rays: self, lane },
+            }
+        }
+
+        /// A lane's ray prepared for tests against triangles.
+        fn triangles(&self, lane: usize) -> TriangleRay<S> {
+            TriangleRay {
+                origin: splats(&self.origin, lane),
+                direction: splats(&self.direction, lane),
                 axes: self.axes,
-                shear: [splat(shear_x), splat(shear_y)],
-            },
+                shear: [splat(&self.shear[0], lane), splat(&self.shear[1], lane)],
+            }
         }
     }
 

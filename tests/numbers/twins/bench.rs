@@ -497,6 +497,7 @@ fn settings() -> Settings {
         bounces: 8,
         least_reflections: 0,
         light_groups: 0,
+        guides: 2,
         sequence: Sequence::Sobol,
         strategy: Strategy::Mis,
         seed: 0,

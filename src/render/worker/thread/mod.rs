@@ -10,7 +10,9 @@ use std::{
 };
 
 use super::{
-    Activity, Event, LayersMade, Level, Order, Scene, Shared, Snapshot, Submission, denoising::Denoising, stage::Stage,
+    Activity, Event, LayersMade, Level, Order, Scene, Shared, Snapshot, Submission,
+    denoising::Denoising,
+    stage::{Stage, pixels},
 };
 use crate::{
     compile::Assets,
@@ -447,8 +449,7 @@ impl State<'_> {
             .clamp(PUBLISH_INTERVAL[0], PUBLISH_INTERVAL[1])
             .max(PUBLISH_COST * self.publish_cost);
         let is_due = if self.denoising.shows(&stage.submission.document, &progress) {
-            let render = &stage.submission.document.render;
-            let pixels = f64::from(render.width) * f64::from(render.height) / f64::from(stage.reduction.pow(2));
+            let pixels = pixels(&stage.submission, stage.reduction);
             self.denoising.is_due(&progress, pixels, stage.is_shown)
         } else {
             let is_urgent = self.published_samples == 0 || progress.is_done;
