@@ -12,7 +12,7 @@ use crate::{
         fresnel::{Fresnel, fresnel_f0, weighted_ior},
         layer::coat::{coat_shape, inner_reflection},
         layer::fuzz::FUZZ_ROUGHNESS_MIN,
-        lobe::{Lobe, Width, is_mirror},
+        lobe::{Lobe, LobeShape, Width, is_mirror},
         material::{
             COAT_ABSORBS, COAT_IS_GGX, COATS_BASE, COMPENSATES, FILM_BANDS, HAS_BOX, HOLDS_FILM, HOLDS_INTEGRALS,
             MATCHED_NODES, Material, NO_TEXTURE, OVER_AZIMUTH, SPARES_METAL, VERTEX_BASE, VERTEX_EMISSION,
@@ -253,8 +253,13 @@ fn loses_light(settings: &MaterialSettings, material: &Material<f32>) -> bool {
     let has_model_of_metal = [Fresnel::None, Fresnel::Conductor].contains(&settings.fresnel);
     let is_metal = material.metalness > 0.0 && (has_model_of_metal || material.has_specular());
     let transmits = material.least_metallic().transmits();
-    let refracts = || transmits && !is_mirror(&material.transmission_shape(&[], false));
-    let is_rough = material.has_texture(&[On::Roughness]) || !is_mirror(&material.shape(&[])) || refracts();
+    // Facets hide each other also where the index bends nothing to speak of; at 1 there are none.
+    let through = LobeShape {
+        eta: 0.0,
+        ..material.transmission_shape(&[], false)
+    };
+    let refracts = transmits && material.ior != 1.0 && !is_mirror(&through);
+    let is_rough = material.has_texture(&[On::Roughness]) || !is_mirror(&material.shape(&[])) || refracts;
     settings.lobe.traits().loses_light && is_rough && (is_metal || transmits)
 }
 

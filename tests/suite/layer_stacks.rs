@@ -152,6 +152,7 @@ fn thick_films_keep_all_light() {
                 "0 thin_film.ior=1.4 thin_film.thickness=0.5 specular.ior=1.0001",
                 "0.37 specular.ior=2 specular.weight_in_index=on thin_film.ior=1 thin_film.thickness=0.5 coat.weight=0.33 \
                  coat.ior=1.5 coat.roughness=1 coat.lobe=ggx coat.on_base=on coat.darkening=0 transmission.roughness=-0.3",
+                "0 thin_film.weight=0 specular.ior=1.0001 transmission.roughness=0.3",
             ] {
                 let own = format!("specular.lobe={lobe} thin_film.weight=1 thin_film.ior=2 specular.roughness={film}");
                 let filmed = material(&format!("{below} {own}"));

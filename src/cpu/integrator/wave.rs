@@ -36,7 +36,7 @@ pub struct Tiles {
     pub origin: [u32; 2],
     /// Their pixels from the corner on, tile by tile, each in Morton order, so that the pixels of a block are consecutive.
     places: Vec<[u32; 2]>,
-    /// Numbers of their pixels.
+    /// Numbers of the pixels up to the end of each.
     ends: Vec<usize>,
 }
 
