@@ -139,7 +139,7 @@ impl<const N: usize> RayHits<N> {
         }
     }
 
-    /// Of the first `count` rays those that hit; a ray that met anything has an end of −∞.
+    /// Of the first `count` rays those that hit; an occluded ray has a length (`tfar`) of −∞.
     fn count(&self, any: bool, count: usize) -> usize {
         let is_hit = |i: &usize| {
             if any {
